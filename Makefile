@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Targets: all (default), check, demo, clean. `make check` and `make demo` install what is missing first.
+VERSION := 0.1.0
+
+CC ?= cc
+BUILD ?= build
+OPT ?= -O2 -g
+PKGS := nlopt gsl libxxhash
+PKG_CONFIG ?= pkg-config
+WERROR ?= -Werror
+# Asked once; empty before the set-up has run, when only `setup` is made.
+pkg_cflags := $(shell $(PKG_CONFIG) --cflags $(PKGS) 2>/dev/null)
+pkg_libs := $(shell $(PKG_CONFIG) --libs $(PKGS) 2>/dev/null)
+# make V=1 shows the commands.
+quiet = $(if $(V),,@echo '  $(1)	$@';)
+
+warnings := -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes $(WERROR)
+# errno and floating-point traps are not used by the mathematics; without them loops vectorise.
+fpflags := -fno-math-errno -fno-trapping-math -ffp-contract=off
+ALL_CFLAGS = -std=c11 -D_GNU_SOURCE $(warnings) $(OPT) -fopenmp $(fpflags) -Isrc -Idata_readers -Ifit \
+	$(pkg_cflags) -DSTDFIT_VERSION='"$(VERSION)"' $(CFLAGS_$(*F)) $(CFLAGS)
+LIBS = $(pkg_libs) -lm
+
+lib_sources := $(wildcard src/*.c) $(wildcard data_readers/*.c) $(filter-out fit/main.c,$(wildcard fit/*.c))
+lib_objects := $(lib_sources:%.c=$(BUILD)/%.o)
+
+# The kernel's loops want vectors; on x86-64 it is compiled a second time for AVX2 and chosen at run time.
+CFLAGS_kernel := -O3
+CFLAGS_kernel_avx2 := -O3 -mavx2 -mfma -DKERNEL_NAME=kernel_avx2
+CFLAGS_metrics := -O3
+ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
+lib_objects += $(BUILD)/fit/kernel_avx2.o
+CFLAGS_kernel_pick := -DKERNEL_HAVE_AVX2
+endif
+test_sources := $(wildcard tests/test_*.c)
+test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
+
+all: $(BUILD)/stdfit
+
+$(BUILD)/stdfit: $(BUILD)/fit/main.o $(lib_objects)
+	$(call quiet,LD)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS)
+
+$(BUILD)/%.o: %.c Makefile
+	@mkdir -p $(@D)
+	$(call quiet,CC)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
+
+$(BUILD)/fit/kernel_avx2.o: fit/kernel.c Makefile
+	@mkdir -p $(@D)
+	$(call quiet,CC)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
+
+$(BUILD)/tests/%: $(BUILD)/tests/%.o $(lib_objects)
+	$(call quiet,LD)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
+
+.SECONDARY:
+
+setup:
+	@scripts/setup.sh
+
+# Recursive, so that pkg-config is asked only after the set-up has run.
+check: setup
+	@$(MAKE) --no-print-directory run-tests
+
+run-tests: $(BUILD)/stdfit $(test_programs)
+	@scripts/run_tests.sh $(BUILD) $(test_programs)
+
+demo: setup
+	@$(MAKE) --no-print-directory all
+	@scripts/demo.sh $(BUILD)/stdfit
+
+clean:
+	rm -rf $(BUILD)
+
+.PHONY: all setup check run-tests demo clean
+
+-include $(lib_objects:.o=.d) $(BUILD)/fit/main.d $(test_sources:tests/%.c=$(BUILD)/tests/%.d)
