@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* cook_torrance - Lambert plus a microfacet lobe: the model that is fitted, as a scalar reference.
+ *
+ *     f_c = kd_c / pi + ks_c F(cos_d) D(h) G(wi, wo) / (4 cos_i cos_o)        c = red, green, blue
+ *
+ * wi to the light, wo to the viewer, unit vectors; h = (wi + wo)/|wi + wo|; cos_d = wi.h, cos_i = wi.z,
+ * cos_o = wo.z. */
+#ifndef COOK_TORRANCE_H
+#define COOK_TORRANCE_H
+
+#include "fresnel.h"
+#include "ndf.h"
+#include "smith.h"
+
+struct cook_torrance {
+	struct ndf ndf;
+	enum gaf gaf;
+	enum fresnel fresnel;
+	double n, k;          /* index of refraction; k only for FRESNEL_CONDUCTOR */
+	double kd[3], ks[3];  /* >= 0 */
+};
+
+/* cook_torrance_lobe - F D G / (4 cos_i cos_o), 1/sr: the specular term for ks = 1. Symmetric in wi and wo to rounding;
+ * 0 unless cos_i, cos_o > 0. */
+double cook_torrance_lobe(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo);
+
+/* cook_torrance_f - the BRDF in three channels, 1/sr; all 0 unless cos_i, cos_o > 0. */
+void cook_torrance_f(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo, double f[3]);
+
+#endif

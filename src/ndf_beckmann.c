@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Beckmann: Gaussian slopes of standard deviation sigma/sqrt(2). D -> 0 at the horizon. */
+#include "ndf_class.h"
+#include "ndf_formulas.h"
+
+const struct ndf_class ndf_class_beckmann = {
+	.name = "beckmann",
+	.gamma = INFINITY,
+	.D = beckmann_D,
+	.lambda = beckmann_lambda,
+};

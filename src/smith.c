@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "smith.h"
+#include "names.h"
+
+static const char *const names[GAF_COUNT] = {"uncorrelated", "correlated", "v-groove"};
+
+const char *gaf_name(enum gaf gaf)
+{
+	return names_at(names, GAF_COUNT, (int)gaf);
+}
+
+enum status gaf_find(const char *name, enum gaf *gaf)
+{
+	const int i = names_find(names, GAF_COUNT, name);
+	if (i < 0)
+		return STATUS_DOMAIN;
+	*gaf = (enum gaf)i;
+	return STATUS_OK;
+}
+
+static double v_groove(struct vec3 wi, struct vec3 wo)
+{
+	const struct vec3 sum = vec3_add(wi, wo);
+	const double length = vec3_length(sum); /* 2 cos_d */
+	const double cos_h = sum.z / length;
+	return fmin(1.0, 4.0 * cos_h * (fmin(wi.z, wo.z) / length));
+}
+
+double gaf_G(enum gaf gaf, const struct ndf *ndf, struct vec3 wi, struct vec3 wo)
+{
+	if (!(wi.z > 0.0 && wo.z > 0.0))
+		return 0.0;
+	switch (gaf) {
+	case GAF_UNCORRELATED:
+		return ndf_G1(ndf, wi) * ndf_G1(ndf, wo);
+	case GAF_CORRELATED:
+		return 1.0 / (1.0 + ndf_lambda(ndf, wi) + ndf_lambda(ndf, wo));
+	case GAF_V_GROOVE:
+		return v_groove(wi, wo);
+	case GAF_COUNT:
+		break;
+	}
+	return 0.0;
+}

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* smith - masking and shadowing: how G of two directions follows from one NDF. */
+#ifndef SMITH_H
+#define SMITH_H
+
+#include "ndf.h"
+
+enum gaf {
+	GAF_UNCORRELATED, /* 1 / ((1 + Lambda(wi)) (1 + Lambda(wo))) */
+	GAF_CORRELATED,   /* 1 / (1 + Lambda(wi) + Lambda(wo)), height-correlated */
+	GAF_V_GROOVE,     /* min(1, 2 cos_h cos_o / cos_d, 2 cos_h cos_i / cos_d), Torrance-Sparrow; reads no NDF */
+	GAF_COUNT
+};
+
+/* gaf_name - "uncorrelated", "correlated", "v-groove"; "unknown" for any other value. */
+const char *gaf_name(enum gaf gaf);
+/* gaf_find - the form called `name`. Returns STATUS_DOMAIN, *gaf untouched, when there is none. */
+MUST_CHECK enum status gaf_find(const char *name, enum gaf *gaf);
+
+/* gaf_G - geometric attenuation of light direction wi and view direction wo, unit vectors, in [0, 1];
+ * symmetric in the two; 0 when either lies at or below the horizon. Relative error below 2e-15. */
+double gaf_G(enum gaf gaf, const struct ndf *ndf, struct vec3 wi, struct vec3 wo);
+
+#endif

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* check - what the test programs share: comparisons that say what was wrong, and rows of reference values.
+ * Programs run from the top of the repository. */
+#ifndef CHECK_H
+#define CHECK_H
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* check_rel - fails unless |got - want| <= tol |want|. Two NaNs, or two equal infinities, are equal. */
+static inline void check_rel(double got, double want, double tol, const char *label)
+{
+	if (got == want || (isnan(got) && isnan(want)))
+		return;
+	const double error = fabs(got - want) / fabs(want);
+	if (!(error <= tol))
+		fail_msg("%s: got %.17g, expected %.17g, relative error %.3g > %.3g", label, got, want, error, tol);
+}
+
+/* check_abs - fails unless |got - want| <= tol. Two NaNs, or two equal infinities, are equal. */
+static inline void check_abs(double got, double want, double tol, const char *label)
+{
+	if (got == want || (isnan(got) && isnan(want)))
+		return;
+	const double error = fabs(got - want);
+	if (!(error <= tol))
+		fail_msg("%s: got %.17g, expected %.17g, error %.3g > %.3g", label, got, want, error, tol);
+}
+
+/* long_double_is_wide - whether long double holds more digits than double here and now: not so on some machines,
+ * nor under valgrind. */
+static inline bool long_double_is_wide(void)
+{
+	volatile long double one = 1.0L;
+	return one + 0x1p-60L > one;
+}
+
+/* check_between - fails unless low <= got <= high. */
+static inline void check_between(double got, double low, double high, const char *label)
+{
+	if (!(got >= low && got <= high))
+		fail_msg("%s: got %.17g, expected a value in [%.17g, %.17g]", label, got, low, high);
+}
+
+enum { GOLDEN_FIELDS = 16 };
+
+/* struct golden - a CSV of reference values: lines of comment starting with '#', a line of names, rows. */
+struct golden {
+	FILE *file;
+	const char *path;
+	int line_number, rows, n_fields;
+	char line[1024];
+	const char *text[GOLDEN_FIELDS]; /* fields of the current row, */
+	double value[GOLDEN_FIELDS];     /* and as numbers; NaN where it is none */
+	char label[256];                 /* "path:line", for messages */
+};
+
+static inline bool golden_line(struct golden *golden)
+{
+	do {
+		if (!fgets(golden->line, sizeof(golden->line), golden->file))
+			return false;
+		golden->line_number++;
+	} while (golden->line[0] == '#');
+	golden->line[strcspn(golden->line, "\r\n")] = '\0';
+	return true;
+}
+
+/* golden_open - opens a table, whose line of names has to be `names`. */
+static inline struct golden golden_open(const char *path, const char *names)
+{
+	struct golden golden = {.file = fopen(path, "r"), .path = path};
+	if (!golden.file)
+		fail_msg("%s: cannot be opened: run this from the top of the repository", path);
+	if (!golden_line(&golden) || strcmp(golden.line, names) != 0)
+		fail_msg("%s: names are '%s', expected '%s'", path, golden.line, names);
+	for (const char *c = names; *c; c++)
+		golden.n_fields += *c == ',';
+	golden.n_fields++;
+	assert_in_range(golden.n_fields, 1, GOLDEN_FIELDS);
+	return golden;
+}
+
+/* golden_next - reads the next row; at the end closes the file and returns false. A table without rows fails. */
+static inline bool golden_next(struct golden *golden)
+{
+	if (!golden_line(golden)) {
+		fclose(golden->file);
+		if (golden->rows == 0)
+			fail_msg("%s: no rows", golden->path);
+		return false;
+	}
+	golden->rows++;
+	snprintf(golden->label, sizeof(golden->label), "%s:%d", golden->path, golden->line_number);
+	char *field = golden->line;
+	for (int i = 0; i < golden->n_fields; i++) {
+		if (!field)
+			fail_msg("%s: %d fields, expected %d", golden->label, i, golden->n_fields);
+		char *comma = strchr(field, ',');
+		if (comma)
+			*comma = '\0';
+		char *end;
+		golden->text[i] = field;
+		golden->value[i] = strtod(field, &end);
+		if (end == field || *end)
+			golden->value[i] = NAN;
+		field = comma ? comma + 1 : NULL;
+	}
+	return true;
+}
+
+#endif
