@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "samples.h"
+#include "names.h"
+#include <stdlib.h>
+#include <sys/mman.h>
+
+/* The planes are one block, aligned and offered to the kernel as huge pages: with small ones, the first touch of each
+ * costs more than reading the file does. The size of a plane is a multiple of a cache line. */
+enum { HUGE_PAGE = 2 << 20 };
+
+static const char *const bins_names[BINS_COUNT] = {[BINS_NODE] = "node", [BINS_CENTRE] = "centre"};
+
+const char *bins_name(enum bins bins)
+{
+	return names_at(bins_names, BINS_COUNT, (int)bins);
+}
+
+enum status bins_find(const char *name, enum bins *bins)
+{
+	const int found = names_find(bins_names, BINS_COUNT, name);
+
+	if (found < 0)
+		return STATUS_DOMAIN;
+	*bins = (enum bins)found;
+	return STATUS_OK;
+}
+
+enum status samples_reserve(struct samples *samples, int n_phi_d)
+{
+	*samples = (struct samples){0};
+	if (n_phi_d != 180 && n_phi_d != 360)
+		return STATUS_DOMAIN;
+
+	const size_t count = (size_t)SAMPLES_THETA_H * SAMPLES_THETA_D * (size_t)n_phi_d;
+	const size_t size = (SAMPLES_CHANNELS * count * sizeof(float) + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE;
+	float *planes = aligned_alloc(HUGE_PAGE, size);
+	if (!planes)
+		return STATUS_NO_MEMORY;
+	madvise(planes, size, MADV_HUGEPAGE); /* a wish: that it cannot be granted does no harm */
+	samples->n_phi_d = n_phi_d;
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		samples->value[c] = planes + (size_t)c * count;
+	return STATUS_OK;
+}
+
+enum status samples_alloc(struct samples *samples, int n_phi_d)
+{
+	const enum status status = samples_reserve(samples, n_phi_d);
+
+	if (status != STATUS_OK)
+		return status;
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		for (size_t e = 0; e < samples_count(samples); e++)
+			samples->value[c][e] = NAN;
+	return STATUS_OK;
+}
+
+void samples_free(struct samples *samples)
+{
+	free(samples->value[0]);
+	*samples = (struct samples){0};
+}
+
+/* Where entry (i, j, k) stands in degrees, all exact: the one place that knows both conventions. */
+struct place {
+	double theta_h_times_90, theta_d, phi_d;
+};
+
+static struct place bins_place(enum bins bins, int i, int j, int k)
+{
+	const double shift = bins == BINS_CENTRE ? 0.5 : 0.0;
+
+	return (struct place){(i + shift) * (i + shift), j + shift, k + shift};
+}
+
+struct halfdiff bins_angles(enum bins bins, int i, int j, int k)
+{
+	static const double radian = 3.14159265358979323846 / 180.0;
+	const struct place at = bins_place(bins, i, j, k);
+
+	return (struct halfdiff){at.theta_h_times_90 / 90.0 * radian, at.theta_d * radian, at.phi_d * radian};
+}
+
+struct halfdiff_trig bins_trig(enum bins bins, int i, int j, int k)
+{
+	const struct place at = bins_place(bins, i, j, k);
+	struct halfdiff_trig t;
+
+	/* theta_h is rounded, so near 90 degrees its cosine is better had from the complement, rounded by itself. */
+	if (at.theta_h_times_90 <= 45.0 * 90.0)
+		sincos_deg(at.theta_h_times_90 / 90.0, &t.sin_h, &t.cos_h);
+	else
+		sincos_deg((90.0 * 90.0 - at.theta_h_times_90) / 90.0, &t.cos_h, &t.sin_h);
+	sincos_deg(at.theta_d, &t.sin_d, &t.cos_d);
+	sincos_deg(at.phi_d, &t.sin_phi, &t.cos_phi);
+	return t;
+}

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "text_quote.h"
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { ESCAPE_LENGTH = 4 };
+
+size_t text_printable(const char *text)
+{
+	const unsigned char *s = (const unsigned char *)text;
+	static const uint32_t smallest[] = {0, 0, 0xa0 /* C1 controls end at 0x9f */, 0x800, 0x10000};
+	size_t length = 0;
+
+	if (s[0] < 0x80)
+		return s[0] >= 0x20 && s[0] != 0x7f;
+	while (s[0] & (0x80u >> length)) /* the first byte tells the length by the ones in front of its first zero */
+		length++;
+	if (length < 2 || length > 4)
+		return 0;
+	uint32_t code = s[0] & (0x7fu >> length);
+	for (size_t i = 1; i < length; i++) {
+		if ((s[i] & 0xc0) != 0x80)
+			return 0;
+		code = code << 6 | (s[i] & 0x3fu);
+	}
+	if (code < smallest[length] || code > 0x10ffff || (code >= 0xd800 && code <= 0xdfff))
+		return 0;
+	return code == 0x2028 || code == 0x2029 ? 0 : length; /* line and paragraph separator */
+}
+
+/* Quotes the character at *s into piece, steps over it and returns the length of the piece. */
+static size_t quote_next(const unsigned char **s, char piece[ESCAPE_LENGTH + 1])
+{
+	const size_t length = text_printable((const char *)*s);
+
+	if (length == 0) {
+		snprintf(piece, ESCAPE_LENGTH + 1, "\\x%02x", (unsigned)**s);
+		*s += 1;
+		return ESCAPE_LENGTH;
+	}
+	memcpy(piece, *s, length);
+	*s += length;
+	return length;
+}
+
+void text_quote(const char *s, char *out, size_t size)
+{
+	static const char ellipsis[] = "...";
+	const unsigned char *from = (const unsigned char *)s;
+	char piece[ESCAPE_LENGTH + 1];
+	size_t total = 0, used = 0;
+
+	for (const unsigned char *at = from; *at;)
+		total += quote_next(&at, piece);
+	if (total >= size) {
+		used = sizeof ellipsis - 1;
+		memcpy(out, ellipsis, used);
+		while (total + used >= size)
+			total -= quote_next(&from, piece);
+	}
+	while (*from) {
+		const size_t length = quote_next(&from, piece);
+		memcpy(out + used, piece, length);
+		used += length;
+	}
+	out[used] = '\0';
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* text_quote - names of files, made fit for a line of text. */
+#ifndef TEXT_QUOTE_H
+#define TEXT_QUOTE_H
+
+#include <stddef.h>
+
+enum { TEXT_QUOTE_SIZE = 256 }; /* room for a name inside a struct error, with the reason after it */
+
+/* text_quote - copies `s` into out[size], terminated: control characters and bytes that are not UTF-8 become \xNN, so
+ * that a message stays one line and leaves the terminal alone; of a text that does not fit the end is kept, after
+ * "...". For people to read, not to be read back: a backslash stands for itself. size >= 16. Never fails. */
+void text_quote(const char *s, char *out, size_t size);
+
+/* text_printable - length of the printable UTF-8 sequence at s; 0 if there is none (end, control character, line
+ * separator, overlong form, surrogate, cut short). */
+size_t text_printable(const char *s);
+
+#endif
