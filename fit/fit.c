@@ -1,0 +1,290 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit.h"
+#include "metrics.h"
+#include "names.h"
+#include "search.h"
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <time.h>
+
+static const char *const weight_names[WEIGHT_COUNT] = {
+	[WEIGHT_NONE] = "none", [WEIGHT_COSINE] = "cosine", [WEIGHT_SOLID_ANGLE] = "solid-angle"};
+
+const char *weight_name(enum weight weight)
+{
+	return names_at(weight_names, WEIGHT_COUNT, (int)weight);
+}
+
+enum status weight_find(const char *name, enum weight *weight)
+{
+	const int found = names_find(weight_names, WEIGHT_COUNT, name);
+
+	if (found < 0)
+		return STATUS_DOMAIN;
+	*weight = (enum weight)found;
+	return STATUS_OK;
+}
+
+struct fit_options fit_options_default(void)
+{
+	struct fit_options o = {.gaf = GAF_UNCORRELATED, .fresnel = FRESNEL_DIELECTRIC, .weight = WEIGHT_NONE,
+				.bins = BINS_NODE, .max_theta = 90, .diffuse = true, .specular = true,
+				.ior = NAN, .gamma = NAN, .sigma = NAN, .threads = omp_get_max_threads()};
+	static const char *const names[] = {"std", "ggx", "beckmann"};
+
+	for (int n = 0; n < 3; n++)
+		o.ndf[o.n_ndf++] = ndf_find(names[n]);
+	return o;
+}
+
+struct fit_context {
+	struct geometry geometry;
+};
+
+enum status fit_context_new(struct fit_context **context, int n_phi_d, const struct fit_options *options)
+{
+	struct fit_context *c = calloc(1, sizeof *c);
+	enum status status = c ? geometry_init(&c->geometry, n_phi_d, options) : STATUS_NO_MEMORY;
+
+	if (status != STATUS_OK) {
+		free(c);
+		c = NULL;
+	}
+	*context = c;
+	return status;
+}
+
+void fit_context_free(struct fit_context *context)
+{
+	if (context)
+		geometry_free(&context->geometry);
+	free(context);
+}
+
+static double now_s(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* One material under one set of options. */
+struct job {
+	const struct fit_context *context;
+	const struct samples *samples;
+	const struct fit_options *options;
+	struct levels levels;
+};
+
+static bool on_bound(double value, double low, double high)
+{
+	return value <= low * (1 + 1e-4) || value >= high * (1 - 1e-4);
+}
+
+static unsigned bounds_of(const struct fit_result *r, const struct fit_options *o)
+{
+	const struct cook_torrance *m = &r->model;
+	unsigned bits = 0;
+
+	if (o->specular) {
+		if (isnan(o->sigma) && on_bound(m->ndf.sigma_x, FIT_SIGMA_MIN, FIT_SIGMA_MAX))
+			bits |= BOUND_SIGMA;
+		if (ndf_has_gamma(m->ndf.class) && isnan(o->gamma) &&
+		    on_bound(m->ndf.gamma - 1.5, FIT_GAMMA_MIN - 1.5, FIT_GAMMA_MAX - 1.5))
+			bits |= BOUND_GAMMA;
+		if (o->fresnel != FRESNEL_NONE && isnan(o->ior) && on_bound(m->n - 1, FIT_IOR_MIN - 1, FIT_IOR_MAX - 1))
+			bits |= BOUND_IOR;
+		if (o->fresnel == FRESNEL_CONDUCTOR && on_bound(m->k, 0, FIT_K_MAX))
+			bits |= BOUND_K;
+	}
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		if (o->diffuse && (m->kd[c] <= 0 || (!o->unbounded && m->kd[c] >= 1)))
+			bits |= (unsigned)BOUND_KD_R << c;
+		if (o->specular && (m->ks[c] <= 0 || (!o->unbounded && m->ks[c] >= 1)))
+			bits |= (unsigned)BOUND_KS_R << c;
+	}
+	return bits;
+}
+
+/* Turns what a search found into a result. */
+static enum status result_of(const struct job *job, const struct ndf_class *class, const struct found *found,
+			     struct fit_result *r)
+{
+	const struct fit_options *o = job->options;
+	struct cook_torrance *m = &r->model;
+	enum status status;
+
+	*r = (struct fit_result){.diffuse = o->diffuse, .specular = o->specular};
+	status = ndf_init(&m->ndf, class, found->shape.sigma, found->shape.sigma, found->shape.gamma);
+	if (status != STATUS_OK)
+		return status;
+	m->gaf = o->gaf;
+	m->fresnel = o->fresnel;
+	m->n = found->shape.ior;
+	m->k = found->shape.k;
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		m->kd[c] = found->linear.kd[c];
+		m->ks[c] = found->linear.ks[c];
+	}
+	status = metrics_compute(&job->context->geometry, job->samples, m, o->threads, &r->metrics);
+	if (status != STATUS_OK)
+		return status;
+	r->error = r->metrics.error[o->weight];
+	r->lower_bound = found->linear.lower_bound;
+	r->end = found->limited ? FIT_LIMIT : FIT_CONVERGED;
+	r->starts = found->starts;
+	r->starts_agreeing = found->starts_agreeing;
+	r->at_bound = bounds_of(r, o);
+	r->evaluations = found->evaluations;
+	return STATUS_OK;
+}
+
+/* Nested distributions: whoever has a free gamma holds GGX and Beckmann within. */
+static bool has_nested(const struct job *job, const struct ndf_class *class)
+{
+	return ndf_has_gamma(class) && isnan(job->options->gamma) && job->options->specular;
+}
+
+static const char *const nested_name[] = {"ggx", "beckmann"};
+static const double nested_gamma[] = {2, INFINITY};
+enum { NESTED = 2 };
+
+/* Fits of the nested models, made when first wanted and shared by all that want them. */
+struct nested {
+	bool done[NESTED];
+	struct fit_result result[NESTED];
+};
+
+static enum status fit_alone(const struct job *job, const struct ndf_class *class, const struct shape given[],
+			     int n_given, struct fit_result *r)
+{
+	const double begin = now_s();
+	struct found found;
+	enum status status = search_run(&job->levels, job->options, class, given, n_given, &found);
+
+	if (status == STATUS_OK)
+		status = result_of(job, class, &found, r);
+	r->seconds = now_s() - begin;
+	return status;
+}
+
+static enum status fit_nested(const struct job *job, struct nested *nested, int which)
+{
+	if (nested->done[which])
+		return STATUS_OK;
+	nested->done[which] = true;
+	return fit_alone(job, ndf_find(nested_name[which]), NULL, 0, &nested->result[which]);
+}
+
+/* Both at once where there are threads for it: two fits on a thread each wait less for one another than two threads
+ * within one. */
+static enum status fit_all_nested(const struct job *job, struct nested *nested)
+{
+	const int outer = job->options->threads < NESTED ? job->options->threads : NESTED;
+	struct fit_options options = *job->options;
+	struct job own = *job;
+	enum status status[NESTED];
+
+	options.threads /= outer;
+	own.options = &options;
+#pragma omp parallel for num_threads(outer) schedule(static) if (outer > 1)
+	for (int n = 0; n < NESTED; n++)
+		status[n] = fit_nested(&own, nested, n);
+	for (int n = 0; n < NESTED; n++)
+		if (status[n] != STATUS_OK)
+			return status[n];
+	return STATUS_OK;
+}
+
+/* Takes the nested optimum over when it is better than what the richer model found: a richer model never loses. */
+static enum status take_nested(const struct job *job, struct fit_result *r, const struct ndf_class *class,
+			       const struct fit_result *from, double gamma)
+{
+	enum status status;
+
+	struct fit_result taken = *from;
+	const double sigma = from->model.ndf.sigma_x;
+
+	if (from->error >= r->error)
+		return STATUS_OK;
+	taken.starts = r->starts;
+	taken.starts_agreeing = r->starts_agreeing;
+	taken.evaluations = r->evaluations;
+	taken.seconds = r->seconds;
+	*r = taken;
+	status = ndf_init(&r->model.ndf, class, sigma, sigma, gamma);
+	r->at_bound = bounds_of(r, job->options);
+	return status;
+}
+
+static enum status fit_with_nested(const struct job *job, const struct ndf_class *class, struct nested *nested,
+				   struct fit_result *r)
+{
+	struct shape given[NESTED];
+	enum status status = fit_all_nested(job, nested);
+
+	for (int n = 0; n < NESTED && status == STATUS_OK; n++) {
+		const struct cook_torrance *m = &nested->result[n].model;
+
+		given[n] = (struct shape){m->ndf.sigma_x, nested_gamma[n], m->n, m->k};
+	}
+	if (status == STATUS_OK)
+		status = fit_alone(job, class, given, NESTED, r);
+	for (int n = 0; n < NESTED && status == STATUS_OK; n++)
+		status = take_nested(job, r, class, &nested->result[n], nested_gamma[n]);
+	return status;
+}
+
+static enum status fit_class(const struct job *job, const struct ndf_class *class, struct nested *nested,
+			     struct fit_result *r)
+{
+	if (has_nested(job, class))
+		return fit_with_nested(job, class, nested, r);
+	for (int n = 0; n < NESTED; n++)
+		if (class == ndf_find(nested_name[n])) {
+			const enum status status = fit_nested(job, nested, n);
+
+			*r = nested->result[n];
+			return status;
+		}
+	return fit_alone(job, class, NULL, 0, r);
+}
+
+enum status fit_run(const struct fit_context *context, const struct samples *samples, const struct fit_options *options,
+		    struct fit_result *results, struct error *error)
+{
+	struct job job = {.context = context, .samples = samples, .options = options};
+	struct nested nested = {.done = {false}};
+	struct table full;
+	enum status status = table_init(&full, &context->geometry, samples, options->threads);
+
+	if (status == STATUS_NO_DATA)
+		return error_set(error, status, "no entry to fit: expected some valid ones that are not all zero");
+	if (status == STATUS_OK)
+		status = levels_init(&job.levels, &full);
+	if (status != STATUS_OK)
+		return error_set(error, status, "%s", status_str(status));
+	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++)
+		status = fit_class(&job, options->ndf[n], &nested, &results[n]);
+	levels_free(&job.levels);
+	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
+}
+
+enum status fit_eval(const struct samples *samples, const struct cook_torrance *model,
+		     const struct fit_options *options, struct fit_metrics *metrics, struct error *error)
+{
+	struct fit_options own = *options;
+	struct fit_context *context;
+	enum status status;
+
+	own.gaf = model->gaf;
+	status = fit_context_new(&context, samples->n_phi_d, &own);
+	if (status == STATUS_OK)
+		status = metrics_compute(&context->geometry, samples, model, options->threads, metrics);
+	fit_context_free(context);
+	if (status == STATUS_NO_DATA)
+		return error_set(error, status, "no entry to compare: expected some valid ones that are not all zero");
+	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
+}

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* fit - from a table of measurements to the parameters of a Cook-Torrance model, and how good they are. */
+#ifndef FIT_H
+#define FIT_H
+
+#include "cook_torrance.h"
+#include "samples.h"
+#include <stdatomic.h>
+#include <stdbool.h>
+
+/* How an entry counts in the error E = sum w |m - f| / sum w m. */
+enum weight {
+	WEIGHT_NONE,        /* 1 */
+	WEIGHT_COSINE,      /* cos_i cos_o */
+	WEIGHT_SOLID_ANGLE, /* cos_i cos_o times the cell's measure */
+	WEIGHT_COUNT
+};
+
+const char *weight_name(enum weight weight);              /* "none", "cosine", "solid-angle" */
+MUST_CHECK enum status weight_find(const char *name, enum weight *weight);
+
+/* Domain of the fit. */
+#define FIT_SIGMA_MIN 1e-4
+#define FIT_SIGMA_MAX 4.0
+#define FIT_GAMMA_MIN 1.5001
+#define FIT_GAMMA_MAX 1000.0
+#define FIT_IOR_MIN 1.0001
+#define FIT_IOR_MAX 100.0
+#define FIT_K_MAX 100.0
+
+enum { FIT_NDFS_MAX = 16 };
+
+/* struct fit_options - everything that changes a result; see fit_options_default(). NaN = free. */
+struct fit_options {
+	const struct ndf_class *ndf[FIT_NDFS_MAX]; /* the NDFs to fit, in this order */
+	int n_ndf;
+	enum gaf gaf;
+	enum fresnel fresnel;
+	enum weight weight;
+	enum bins bins;
+	double max_theta;      /* degrees; entries with theta_i or theta_o above it are dropped; 90 = none */
+	bool unbounded;        /* kd, ks in [0, inf) instead of [0, 1] */
+	bool diffuse;          /* false: kd = 0 */
+	bool specular;         /* false: ks = 0, no shape is searched */
+	bool gray;             /* one kd and one ks for the three channels */
+	double ior, gamma, sigma; /* fixed value, or NaN */
+	int starts;            /* extra random starts on the full table; 0 by default */
+	uint64_t seed;
+	int threads;           /* threads of one fit; changes no result */
+	/* Set to true from a signal handler or another thread to stop; may be NULL. */
+	const atomic_bool *cancel;
+};
+
+struct fit_options fit_options_default(void);
+
+/* struct fit_metrics - how far a model is from the table. */
+struct fit_metrics {
+	double error[WEIGHT_COUNT]; /* E under each weight */
+	double rms_cosine;          /* RMS of c (m - f), c = cos_i cos_o */
+	double rms_cube_root;       /* RMS of cbrt(c m) - cbrt(c f) */
+	double log_error;           /* mean |ln((c m + 1e-3)/(c f + 1e-3))| */
+	size_t samples;             /* table entries (of three channels) compared */
+};
+
+enum fit_end {
+	FIT_CONVERGED,
+	FIT_LIMIT,        /* a limit on evaluations or time ended the search */
+};
+
+/* Bits of fit_result.at_bound, and their names for the result table. */
+enum fit_bound {
+	BOUND_SIGMA = 1 << 0,
+	BOUND_GAMMA = 1 << 1,
+	BOUND_IOR = 1 << 2,
+	BOUND_KD_R = 1 << 3,
+	BOUND_KD_G = 1 << 4,
+	BOUND_KD_B = 1 << 5,
+	BOUND_KS_R = 1 << 6,
+	BOUND_KS_G = 1 << 7,
+	BOUND_KS_B = 1 << 8,
+	BOUND_K = 1 << 9,
+};
+
+struct fit_result {
+	struct cook_torrance model; /* parameters; n is meaningless for FRESNEL_NONE or without a specular term */
+	bool diffuse, specular;     /* what the model has, as in the options */
+	double error;               /* E under the fit's own weight */
+	double lower_bound;         /* certified: no kd, ks of this shape goes below it */
+	struct fit_metrics metrics;
+	enum fit_end end;
+	int starts, starts_agreeing; /* local searches run; those that ended within 0.1 % of the best */
+	unsigned at_bound;           /* enum fit_bound */
+	long evaluations;            /* shapes evaluated, on thinned and full tables together */
+	double seconds;
+};
+
+/* struct fit_context - the geometry of a kind of table under given options, shared by fits, read-only once made. */
+struct fit_context;
+
+/* fit_context_new - precomputes what depends on (n_phi_d, bins, weight, max_theta, gaf) only. */
+MUST_CHECK enum status fit_context_new(struct fit_context **context, int n_phi_d, const struct fit_options *options);
+void fit_context_free(struct fit_context *context);
+
+/* fit_run - fits every NDF of the options; results[0 .. options->n_ndf - 1], in the options' order.
+ * Richer models never end above the nested ones: GGX's and Beckmann's optima are candidates of STD's.
+ * Errors: STATUS_NO_DATA (no valid entry, all zero), STATUS_NO_MEMORY, STATUS_INTERRUPTED. */
+MUST_CHECK enum status fit_run(const struct fit_context *context, const struct samples *samples,
+			       const struct fit_options *options, struct fit_result *results, struct error *error);
+
+/* fit_eval - the metrics of a given model against a table, no fit. */
+MUST_CHECK enum status fit_eval(const struct samples *samples, const struct cook_torrance *model,
+				const struct fit_options *options, struct fit_metrics *metrics, struct error *error);
+
+#endif

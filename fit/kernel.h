@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* kernel - the two loops in which a fit spends its time. Mathematics only: no threads, no allocation.
+ *
+ * A slot is one value of the model; it stands for one measured entry (single) or for two (pair), since
+ * phi_d -> 180 deg - phi_d swaps wi and wo and leaves the model as it is. Slots come in blocks of
+ * KERNEL_BLOCK, all of one sort, padded with slots whose members are all zero: those add nothing.
+ * The file is compiled once for any machine and once for AVX2; kernel_pick() chooses at run time. */
+#ifndef KERNEL_H
+#define KERNEL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { KERNEL_BLOCK = 1024 };
+
+/* The masking function G1 of one shape, tabulated over q = log2 cot theta for linear interpolation:
+ * a direction whose fixed-point q is `q` lies between entries (q - q_min) >> shift and the one above. */
+struct kernel_g1 {
+	const float *value;
+	int32_t q_min;
+	int shift;
+};
+
+enum kernel_gaf {
+	KERNEL_SEPARABLE,  /* G1(i) G1(o) */
+	KERNEL_CORRELATED, /* 1 / (1/G1(i) + 1/G1(o) - 1) */
+	KERNEL_STATIC,     /* G depends on the geometry alone and stands in geo already */
+};
+
+/* Geometry of one block of slots; see struct table. */
+struct kernel_slots {
+	const int32_t *q_i, *q_o;
+	const float *geo;
+	const uint16_t *row;
+};
+
+/* What one pass returns for one channel. With f = d w + ks s, d = kd/pi, and r = m - f over the members of the
+ * block: error = sum |r|; slope = -sum sign(r) (w, s), a subgradient of the error by (d, ks); curvature (w w, w s, s s): an
+ * estimate of its second derivatives from the members with |r| < tau f (0 when tau = 0). */
+struct kernel_sums {
+	double error, slope[2], curvature[3];
+};
+
+struct kernel {
+	const char *name;
+	/* lobe - s = geo row[.] G for one block. */
+	void (*lobe)(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *row, const struct kernel_slots *slots,
+		     float *s);
+	/* pass - sums of one channel of one block; value holds KERNEL_BLOCK members, twice that for pairs. */
+	void (*pass)(bool pair, const float *value, const float *w, const float *s, double d, double ks, double tau,
+		     struct kernel_sums *sums);
+};
+
+extern const struct kernel kernel_plain;
+#ifdef KERNEL_HAVE_AVX2
+extern const struct kernel kernel_avx2;
+#endif
+
+/* kernel_pick - the fastest kernel that this processor can run. */
+const struct kernel *kernel_pick(void);
+
+#endif

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* metrics - how far a model is from a table, in double, under every weight and metric at once. */
+#ifndef METRICS_H
+#define METRICS_H
+
+#include "table.h"
+
+/* metrics_compute - compares `model` with the entries of `samples` that `geometry` has and that are valid.
+ * Accuracy: relative error below 1e-7 of each metric against a sum of exact model values.
+ * Errors: STATUS_NO_DATA when no entry is valid or all are zero, STATUS_NO_MEMORY. */
+MUST_CHECK enum status metrics_compute(const struct geometry *geometry, const struct samples *samples,
+				       const struct cook_torrance *model, int threads, struct fit_metrics *metrics);
+
+#endif

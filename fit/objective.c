@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "objective.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* An error that no fit can have (kd = ks = 0 gives 1), finite as nlopt wants it. */
+static const double no_fit = 1e3;
+
+enum status objective_init(struct objective *o, const struct table *table, const struct fit_options *options,
+			   const struct ndf_class *class, int threads, enum masking_density density)
+{
+	*o = (struct objective){.table = table, .options = options, .class = class, .kernel = kernel_pick(),
+				.threads = threads};
+	o->tabulated.sigma = NAN;
+	objective_forget(o);
+	o->s = aligned_alloc(64, (size_t)table->n_blocks * KERNEL_BLOCK * sizeof *o->s);
+	o->sums = malloc((size_t)table->n_blocks * sizeof *o->sums);
+	if (!o->s || !o->sums || masking_init(&o->masking, table->geometry->q_min, density) != STATUS_OK) {
+		objective_free(o);
+		return STATUS_NO_MEMORY;
+	}
+	return STATUS_OK;
+}
+
+void objective_forget(struct objective *o)
+{
+	o->start.kd[0] = NAN;
+}
+
+void objective_free(struct objective *o)
+{
+	masking_free(&o->masking);
+	free(o->s);
+	free(o->sums);
+	o->s = NULL;
+	o->sums = NULL;
+}
+
+static enum status tabulate(struct objective *o, const struct shape *shape)
+{
+	const struct geometry *g = o->table->geometry;
+	struct ndf ndf;
+
+	if (shape->sigma == o->tabulated.sigma && shape->gamma == o->tabulated.gamma)
+		return STATUS_OK;
+	const enum status status = ndf_init(&ndf, o->class, shape->sigma, shape->sigma, shape->gamma);
+
+	if (status != STATUS_OK)
+		return status;
+	for (int i = 0; i < SAMPLES_THETA_H; i++)
+		o->D[i] = ndf_D(&ndf, (struct vec3){g->trig[i].sin_h, 0, g->trig[i].cos_h});
+	if (o->options->gaf != GAF_V_GROOVE)
+		masking_fill(&o->masking, &ndf);
+	o->tabulated = *shape;
+	return STATUS_OK;
+}
+
+static void fill_rows(struct objective *o, const struct shape *shape)
+{
+	float F[SAMPLES_THETA_D];
+
+	for (int j = 0; j < SAMPLES_THETA_D; j++)
+		F[j] = (float)fresnel_F(o->options->fresnel, o->table->geometry->trig[j].cos_d, shape->ior, shape->k);
+	for (int i = 0; i < SAMPLES_THETA_H; i++)
+		for (int j = 0; j < SAMPLES_THETA_D; j++)
+			o->row[j + SAMPLES_THETA_D * i] = (float)o->D[i] * F[j];
+}
+
+static void lobe_block(struct objective *o, int block)
+{
+	static const enum kernel_gaf gaf[GAF_COUNT] = {
+		[GAF_UNCORRELATED] = KERNEL_SEPARABLE, [GAF_CORRELATED] = KERNEL_CORRELATED, [GAF_V_GROOVE] = KERNEL_STATIC};
+	const struct kernel_g1 g1 = masking_kernel(&o->masking);
+	const struct kernel_slots slots = table_slots(o->table, block);
+
+	o->kernel->lobe(gaf[o->options->gaf], &g1, o->row, &slots, o->s + (size_t)block * KERNEL_BLOCK);
+}
+
+/* What the three channels ask of a pass: nothing where x is NULL. */
+struct look {
+	const double *x[SAMPLES_CHANNELS];
+	double tau[SAMPLES_CHANNELS];
+};
+
+static void pass_block(struct objective *o, const struct look *look, int block)
+{
+	const struct table *t = o->table;
+	const size_t at = (size_t)block * KERNEL_BLOCK;
+
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		if (look->x[c])
+			o->kernel->pass(block < t->n_pair_blocks, table_value(t, block, c), t->w + at, o->s + at, look->x[c][0],
+					look->x[c][1], look->tau[c], &o->sums[block][c]);
+}
+
+static void pass_blocks(struct objective *o, const struct look *look, bool lobe, int from, int to)
+{
+	for (int block = from; block < to; block++) {
+		if (lobe)
+			lobe_block(o, block);
+		pass_block(o, look, block);
+	}
+}
+
+/* One pass over the table; with `lobe`, s is computed on the way, while each block is in cache. The blocks' sums are
+ * added in their order: the result is the same to the bit for any number of threads. Tasks, not a parallel loop: on a
+ * busy machine this thread then does what the others do not come to, and never waits for one that has not begun. */
+static void pass(struct objective *o, const struct look *look, bool lobe, struct kernel_sums total[])
+{
+	enum { CHUNK = 16 };
+	const int n_blocks = o->table->n_blocks;
+
+	if (o->threads > 1) {
+#pragma omp taskloop grainsize(1) default(shared)
+		for (int from = 0; from < n_blocks; from += CHUNK)
+			pass_blocks(o, look, lobe, from, from + CHUNK < n_blocks ? from + CHUNK : n_blocks);
+	} else {
+		pass_blocks(o, look, lobe, 0, n_blocks);
+	}
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		total[c] = (struct kernel_sums){0};
+		for (int block = 0; look->x[c] && block < o->table->n_blocks; block++) {
+			const struct kernel_sums *sums = &o->sums[block][c];
+
+			total[c].error += sums->error;
+			for (int a = 0; a < 2; a++)
+				total[c].slope[a] += sums->slope[a];
+			for (int a = 0; a < 3; a++)
+				total[c].curvature[a] += sums->curvature[a];
+		}
+	}
+}
+
+enum status objective_lobe(struct objective *o, const struct shape *shape)
+{
+	const enum status status = tabulate(o, shape);
+
+	if (status != STATUS_OK)
+		return status;
+	fill_rows(o, shape);
+	for (int block = 0; block < o->table->n_blocks; block++)
+		lobe_block(o, block);
+	return STATUS_OK;
+}
+
+/* The upper end of kd and ks: far beyond any material when unbounded. */
+static double most_albedo(const struct fit_options *options)
+{
+	return options->unbounded ? 1e6 : 1;
+}
+
+/* With one kd and ks for all channels there is one problem, their sum; else one a channel. */
+static void start(const struct objective *o, struct l1 problem[], int n_problems, double tolerance, bool certify)
+{
+	const struct fit_options *options = o->options;
+	const double *sum = o->table->sum;
+	const double most = most_albedo(options);
+	const double lo[2] = {0, 0}, hi[2] = {options->diffuse ? (double)(float)(most / M_PI) : 0, options->specular ? most : 0};
+
+	for (int p = 0; p < n_problems; p++) {
+		const double scale = n_problems == 1 ? sum[0] + sum[1] + sum[2] : sum[p];
+		const double first[2] = {o->start.kd[p] / M_PI, o->start.ks[p]};
+
+		l1_start(&problem[p], lo, hi, isnan(o->start.kd[0]) ? NULL : first, scale, tolerance, certify);
+	}
+}
+
+static void update(struct l1 problem[], int n_problems, const struct kernel_sums total[])
+{
+	if (n_problems == SAMPLES_CHANNELS) {
+		for (int p = 0; p < n_problems; p++)
+			if (!problem[p].done)
+				l1_update(&problem[p], total[p].error, total[p].slope, total[p].curvature);
+		return;
+	}
+	struct kernel_sums all = {0};
+
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		all.error += total[c].error;
+		for (int a = 0; a < 2; a++)
+			all.slope[a] += total[c].slope[a];
+		for (int a = 0; a < 3; a++)
+			all.curvature[a] += total[c].curvature[a];
+	}
+	l1_update(problem, all.error, all.slope, all.curvature);
+}
+
+static void finish(const struct objective *o, const struct l1 problem[], int n_problems, struct linear *linear)
+{
+	double sum = 0;
+
+	linear->error = linear->lower_bound = 0;
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		const struct l1 *p = &problem[n_problems == 1 ? 0 : c];
+
+		/* On the bound to the last bit: kd is then the bound itself. */
+		linear->kd[c] = p->best[0] < p->hi[0] ? p->best[0] * M_PI : p->hi[0] > 0 ? most_albedo(o->options) : 0;
+		linear->ks[c] = p->best[1];
+		sum += o->table->sum[c];
+	}
+	for (int p = 0; p < n_problems; p++) {
+		linear->error += problem[p].error / sum;
+		if (problem[p].certify)
+			linear->lower_bound += l1_lower_bound(&problem[p]) / sum;
+	}
+}
+
+double objective_eval(struct objective *o, const struct shape *shape, double tolerance, bool certify,
+		      struct linear *linear)
+{
+	const int n_problems = o->options->gray ? 1 : SAMPLES_CHANNELS;
+	struct l1 problem[SAMPLES_CHANNELS];
+	struct kernel_sums total[SAMPLES_CHANNELS];
+	bool lobe = true, going = true;
+
+	o->evaluations++;
+	if (tabulate(o, shape) != STATUS_OK)
+		return no_fit;
+	fill_rows(o, shape);
+	start(o, problem, n_problems, tolerance, certify);
+	while (going) {
+		struct look look = {0};
+
+		for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+			const struct l1 *p = &problem[n_problems == 1 ? 0 : c];
+
+			look.x[c] = p->done ? NULL : p->x;
+			look.tau[c] = p->tau;
+		}
+		pass(o, &look, lobe, total);
+		lobe = false;
+		update(problem, n_problems, total);
+		going = false;
+		for (int p = 0; p < n_problems; p++)
+			going |= !problem[p].done;
+	}
+	finish(o, problem, n_problems, linear);
+	o->start = *linear;
+	return linear->error;
+}

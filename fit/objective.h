@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* objective - the error of a shape: the best that any kd and ks make of it on a table. */
+#ifndef OBJECTIVE_H
+#define OBJECTIVE_H
+
+#include "l1.h"
+#include "masking.h"
+#include "table.h"
+
+/* struct shape - what a fit searches: the parameters in which the model is not linear. */
+struct shape {
+	double sigma, gamma, ior, k;
+};
+
+/* struct linear - the parameters in which it is, and how good they are. */
+struct linear {
+	double kd[SAMPLES_CHANNELS], ks[SAMPLES_CHANNELS];
+	double error;       /* E */
+	double lower_bound; /* no kd, ks of this shape goes below it (certified looks only; else 0) */
+};
+
+struct objective {
+	const struct table *table;
+	const struct fit_options *options;
+	const struct ndf_class *class;
+	const struct kernel *kernel;
+	int threads; /* more than 1: called by one thread of an OpenMP team, whose others help */
+	struct masking masking;           /* G1 of the shape */
+	float *s;                         /* the lobe, a float a slot */
+	struct kernel_sums (*sums)[SAMPLES_CHANNELS]; /* one set a block */
+	double D[SAMPLES_THETA_H];
+	float row[TABLE_ROWS];
+	struct shape tabulated;           /* sigma and gamma that masking and D stand for */
+	struct linear start;              /* where the next inner solve begins: the last one's end */
+	long evaluations;
+};
+
+/* objective_init - buffers for one table and one NDF. */
+MUST_CHECK enum status objective_init(struct objective *objective, const struct table *table,
+				      const struct fit_options *options, const struct ndf_class *class, int threads,
+				      enum masking_density density);
+void objective_free(struct objective *objective);
+/* objective_forget - lets the next inner solve begin from nothing, not where the last one ended. */
+void objective_forget(struct objective *objective);
+
+/* objective_lobe - the specular term of a shape for ks = 1, slot by slot, into objective->s.
+ * Returns STATUS_DOMAIN outside the NDF's domain. */
+MUST_CHECK enum status objective_lobe(struct objective *objective, const struct shape *shape);
+
+/* objective_eval - minimises E over kd and ks in the box of the options, to `tolerance` (relative to the sum of w m):
+ * by Newton's estimate, or certified. Returns E, or a large finite number outside the NDF's domain. */
+double objective_eval(struct objective *objective, const struct shape *shape, double tolerance, bool certify,
+		      struct linear *linear);
+
+#endif

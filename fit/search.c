@@ -1,0 +1,541 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "search.h"
+#include <math.h>
+#include <nlopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Slots of the thinned tables. Systematic samples this small estimate E to about 0.1, 0.03 and 0.003 %. */
+static const int level_slots[SEARCH_LEVELS - 1] = {3000, 12000, 60000};
+
+enum status levels_init(struct levels *levels, struct table *full)
+{
+	enum status status = STATUS_OK;
+
+	*levels = (struct levels){0};
+	levels->table[SEARCH_LEVELS - 1] = *full;
+	*full = (struct table){0};
+	for (int l = SEARCH_LEVELS - 2; l >= 0 && status == STATUS_OK; l--)
+		status = table_thin(&levels->table[l], &levels->table[l + 1], level_slots[l]);
+	if (status != STATUS_OK)
+		levels_free(levels);
+	return status;
+}
+
+void levels_free(struct levels *levels)
+{
+	for (int l = 0; l < SEARCH_LEVELS; l++)
+		table_free(&levels->table[l]);
+}
+
+/* The coordinates of the search, in which the valleys are nearly straight: ln sigma, ln(gamma - 1.5),
+ * sqrt(F0) = (n - 1)/(n + 1) and k/(k + 1). */
+enum coordinate { SIGMA, GAMMA, IOR, K };
+
+static double *parameter(struct shape *shape, enum coordinate c)
+{
+	double *const at[] = {&shape->sigma, &shape->gamma, &shape->ior, &shape->k};
+
+	return at[c];
+}
+
+static double to_coordinate(enum coordinate c, double value)
+{
+	switch (c) {
+	case SIGMA:
+		return log(value);
+	case GAMMA:
+		return log(value - 1.5);
+	case IOR:
+		return (value - 1) / (value + 1);
+	default:
+		return value / (value + 1);
+	}
+}
+
+static double from_coordinate(enum coordinate c, double x)
+{
+	switch (c) {
+	case SIGMA:
+		return exp(x);
+	case GAMMA:
+		return 1.5 + exp(x);
+	case IOR:
+		return (1 + x) / (1 - x);
+	default:
+		return x / (1 - x);
+	}
+}
+
+static const double lowest[] = {FIT_SIGMA_MIN, FIT_GAMMA_MIN, FIT_IOR_MIN, 0};
+static const double highest[] = {FIT_SIGMA_MAX, FIT_GAMMA_MAX, FIT_IOR_MAX, FIT_K_MAX};
+
+struct place {
+	double x[SEARCH_DIMS];
+	double error;
+};
+
+struct search {
+	const struct levels *levels;
+	const struct fit_options *options;
+	const struct ndf_class *class;
+	int dims;
+	enum coordinate coordinate[SEARCH_DIMS];
+	double lo[SEARCH_DIMS], hi[SEARCH_DIMS];
+	struct shape fixed; /* values of the parameters that are not searched */
+	_Atomic long evaluations;
+};
+
+static bool cancelled(const struct search *s)
+{
+	return s->options->cancel && atomic_load_explicit(s->options->cancel, memory_order_relaxed);
+}
+
+static void add_dim(struct search *s, enum coordinate c)
+{
+	const int d = s->dims++;
+
+	s->coordinate[d] = c;
+	s->lo[d] = to_coordinate(c, lowest[c]);
+	s->hi[d] = to_coordinate(c, highest[c]);
+}
+
+static void setup(struct search *s)
+{
+	const struct fit_options *o = s->options;
+
+	s->fixed = (struct shape){o->sigma, o->gamma, o->ior, 0};
+	if (!o->specular) {
+		/* Any valid shape will do: ks is 0. */
+		s->fixed = (struct shape){1, 2, 1.5, 0};
+		return;
+	}
+	if (isnan(o->sigma))
+		add_dim(s, SIGMA);
+	if (ndf_has_gamma(s->class) && isnan(o->gamma))
+		add_dim(s, GAMMA);
+	if (o->fresnel != FRESNEL_NONE && isnan(o->ior))
+		add_dim(s, IOR);
+	if (o->fresnel == FRESNEL_CONDUCTOR)
+		add_dim(s, K);
+}
+
+static struct shape shape_at(const struct search *s, const double x[])
+{
+	struct shape shape = s->fixed;
+
+	for (int d = 0; d < s->dims; d++) {
+		const enum coordinate c = s->coordinate[d];
+		const double value = from_coordinate(c, x[d]);
+
+		*parameter(&shape, c) = fmin(fmax(value, lowest[c]), highest[c]);
+	}
+	return shape;
+}
+
+static void place_of(const struct search *s, const struct shape *shape, double x[])
+{
+	struct shape copy = *shape;
+
+	for (int d = 0; d < s->dims; d++) {
+		const enum coordinate c = s->coordinate[d];
+		const double value = *parameter(&copy, c);
+
+		x[d] = fmin(fmax(to_coordinate(c, fmin(value, highest[c])), s->lo[d]), s->hi[d]);
+	}
+}
+
+/* The grid of the scan. */
+static const double scan_sigma[] = {1e-4, 2e-4, 4e-4, 7e-4, 1e-3, 1.5e-3, 2.2e-3, 3.2e-3, 4.6e-3, 6.5e-3, 9e-3,
+				    0.0125, 0.0175, 0.025, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2, 0.28, 0.4, 0.55, 0.8,
+				    1.2, 2, 4};
+static const double scan_gamma[] = {1.5001, 1.501, 1.505, 1.515, 1.54, 1.6, 1.75, 2.2, 3.5, 8, 50};
+static const double scan_ior[] = {1.03, 1.15, 1.35, 1.8, 3, 8, 60};
+static const double scan_k[] = {0, 0.5, 2, 6, 30};
+
+struct axis {
+	const double *value;
+	int count;
+};
+#define AXIS(a) {a, sizeof(a) / sizeof(a[0])}
+static const struct axis axis[] = {[SIGMA] = AXIS(scan_sigma), [GAMMA] = AXIS(scan_gamma), [IOR] = AXIS(scan_ior),
+				   [K] = AXIS(scan_k)};
+
+static long grid_size(const struct search *s, int from)
+{
+	long size = 1;
+
+	for (int d = from; d < s->dims; d++)
+		size *= axis[s->coordinate[d]].count;
+	return size;
+}
+
+static void grid_place(const struct search *s, long index, struct place *place)
+{
+	for (int d = s->dims - 1; d >= 0; d--) {
+		const struct axis *a = &axis[s->coordinate[d]];
+
+		place->x[d] = to_coordinate(s->coordinate[d], a->value[index % a->count]);
+		index /= a->count;
+	}
+}
+
+/* Evaluates the grid on the coarsest table. Neighbours along the last axes share G1 and begin the inner solve where
+ * the one before ended; a stretch of the grid begins afresh, so the result does not depend on the threads. */
+static enum status scan(struct search *s, struct place *grid)
+{
+	const long total = grid_size(s, 0);
+	const int first_ior = s->dims > 0 && s->coordinate[0] == SIGMA ? 1 + (s->dims > 1 && s->coordinate[1] == GAMMA) : 0;
+	const long stretch = grid_size(s, first_ior);
+	enum status status = STATUS_OK;
+
+#pragma omp parallel num_threads(s->options->threads) if (s->options->threads > 1)
+	{
+		struct objective o;
+		enum status mine = objective_init(&o, &s->levels->table[0], s->options, s->class, 1, MASKING_COARSE);
+
+#pragma omp for schedule(dynamic)
+		for (long n = 0; n < total; n += stretch) {
+			struct linear linear;
+
+			if (mine != STATUS_OK || cancelled(s))
+				continue;
+			objective_forget(&o);
+			for (long i = n; i < n + stretch; i++) {
+				grid_place(s, i, &grid[i]);
+				const struct shape shape = shape_at(s, grid[i].x);
+
+				grid[i].error = objective_eval(&o, &shape, 2e-3, false, &linear);
+			}
+		}
+		if (mine == STATUS_OK) {
+			s->evaluations += o.evaluations;
+			objective_free(&o);
+		} else {
+#pragma omp critical
+			status = mine;
+		}
+	}
+	return status;
+}
+
+/* Whether no neighbour in the grid is better; of a plateau only the first place counts. */
+static bool is_valley(const struct search *s, const struct place *grid, long index)
+{
+	long step = 1;
+
+	for (int d = s->dims - 1; d >= 0; d--) {
+		const int count = axis[s->coordinate[d]].count, at = (int)(index / step % count);
+
+		if (at > 0 && grid[index - step].error <= grid[index].error)
+			return false;
+		if (at + 1 < count && grid[index + step].error < grid[index].error)
+			return false;
+		step *= count;
+	}
+	return true;
+}
+
+static int by_error(const void *a, const void *b)
+{
+	const struct place *p = a, *q = b;
+
+	if (p->error != q->error)
+		return p->error < q->error ? -1 : 1;
+	return memcmp(p->x, q->x, sizeof p->x);
+}
+
+enum { MOST_STARTS = 24 };
+
+/* The valleys of the grid, best first. Returns how many, at most MOST_STARTS. */
+static int pick_starts(const struct search *s, struct place *grid, struct place starts[])
+{
+	const long total = grid_size(s, 0);
+	long n_valleys = 0;
+	struct place *valley = malloc((size_t)total * sizeof *valley);
+
+	if (!valley)
+		return -1;
+	for (long n = 0; n < total; n++)
+		if (is_valley(s, grid, n))
+			valley[n_valleys++] = grid[n];
+	qsort(valley, (size_t)n_valleys, sizeof *valley, by_error);
+	const int count = n_valleys < MOST_STARTS ? (int)n_valleys : MOST_STARTS;
+
+	memcpy(starts, valley, (size_t)count * sizeof *starts);
+	free(valley);
+	return count;
+}
+
+/* How a level is searched. */
+struct stage {
+	int most;         /* places that go on from the level before, at most */
+	double margin;    /* those whose error is within this of the best, relative */
+	nlopt_algorithm algorithm;
+	double step;      /* first step, in grid spacings */
+	double tolerance; /* of the error, relative */
+	int evaluations;
+};
+/* On the small tables, whose error is rugged, the simplex method is the one that gets through. What is left to do on the
+ * full one is a millionth of the error, on smooth ground: a quadratic model needs the fewest looks there. */
+static const struct stage stages[SEARCH_LEVELS] = {
+	{0, 0, NLOPT_LN_SBPLX, 0.7, 2e-4, 150},
+	{8, 0.02, NLOPT_LN_SBPLX, 0.3, 3e-5, 150},
+	{4, 3e-3, NLOPT_LN_SBPLX, 0.1, 1e-5, 100},
+	{2, 1e-4, NLOPT_LN_BOBYQA, 0.01, 1e-6, 16},
+};
+
+/* One local search. */
+struct local {
+	struct search *search;
+	struct objective *objective;
+	double tolerance;
+	struct place best;
+	double first; /* error of the place it began at */
+	nlopt_opt opt;
+};
+
+static double local_eval(unsigned dims, const double *x, double *gradient, void *data)
+{
+	struct local *l = data;
+	struct linear linear;
+	const struct shape shape = shape_at(l->search, x);
+
+	(void)gradient;
+	if (cancelled(l->search))
+		nlopt_force_stop(l->opt);
+	const double error = objective_eval(l->objective, &shape, l->tolerance, false, &linear);
+
+	if (isinf(l->best.error))
+		l->first = error;
+	if (error < l->best.error) {
+		l->best.error = error;
+		memcpy(l->best.x, x, dims * sizeof *x);
+	}
+	return error;
+}
+
+/* Improves *place on the objective's table. */
+static enum status refine(struct search *s, struct objective *o, const struct stage *stage, struct place *place,
+			  bool *limited)
+{
+	static const double spacing[] = {[SIGMA] = 0.35, [GAMMA] = 1.0, [IOR] = 0.1, [K] = 0.15};
+	const unsigned dims = (unsigned)s->dims;
+	struct local local = {.search = s, .objective = o, .tolerance = 0.1 * stage->tolerance};
+	double x[SEARCH_DIMS], first[SEARCH_DIMS], error;
+
+	objective_forget(o);
+	local.best = *place;
+	local.best.error = INFINITY;
+	memcpy(x, place->x, sizeof x);
+	nlopt_opt opt = nlopt_create(stage->algorithm, dims);
+
+	if (!opt)
+		return STATUS_NO_MEMORY;
+	for (unsigned d = 0; d < dims; d++) {
+		first[d] = stage->step * spacing[s->coordinate[d]];
+		if (x[d] + first[d] > s->hi[d])
+			first[d] = -first[d];
+	}
+	local.opt = opt;
+	nlopt_set_min_objective(opt, local_eval, &local);
+	nlopt_set_lower_bounds(opt, s->lo);
+	nlopt_set_upper_bounds(opt, s->hi);
+	nlopt_set_initial_step(opt, first);
+	nlopt_set_ftol_rel(opt, stage->tolerance);
+	nlopt_set_xtol_rel(opt, 1e-5);
+	nlopt_set_maxeval(opt, stage->evaluations);
+	const nlopt_result result = nlopt_optimize(opt, x, &error);
+
+	/* Stopped with the error still falling. */
+	*limited = result == NLOPT_MAXEVAL_REACHED && local.best.error < (1 - 1e-4) * local.first;
+	nlopt_destroy(opt);
+	*place = local.best;
+	return result == NLOPT_OUT_OF_MEMORY ? STATUS_NO_MEMORY : STATUS_OK;
+}
+
+/* Places too near a better one to lead anywhere else go; so do those too far behind. Returns how many stay. */
+static int thin_out(const struct search *s, struct place *place, int count, const struct stage *stage)
+{
+	int kept = 0;
+
+	qsort(place, (size_t)count, sizeof *place, by_error);
+	for (int n = 0; n < count && kept < stage->most; n++) {
+		bool near = false;
+
+		for (int m = 0; m < kept && !near; m++) {
+			near = true;
+			for (int d = 0; d < s->dims; d++)
+				near &= fabs(place[n].x[d] - place[m].x[d]) < 0.02 * (s->hi[d] - s->lo[d]);
+		}
+		if (!near && place[n].error <= (1 + stage->margin) * place[0].error)
+			place[kept++] = place[n];
+	}
+	return kept;
+}
+
+/* Refines the places on one thinned table, one place a thread. */
+static enum status refine_all(struct search *s, int level, struct place *place, int count)
+{
+	enum status status = STATUS_OK;
+
+#pragma omp parallel num_threads(s->options->threads) if (s->options->threads > 1)
+	{
+		struct objective o;
+		enum status mine = objective_init(&o, &s->levels->table[level], s->options, s->class, 1, MASKING_COARSE);
+		const bool ready = mine == STATUS_OK;
+
+#pragma omp for schedule(dynamic)
+		for (int n = 0; n < count; n++) {
+			bool limited;
+
+			if (mine == STATUS_OK && !cancelled(s))
+				mine = refine(s, &o, &stages[level], &place[n], &limited);
+		}
+		if (ready) {
+			s->evaluations += o.evaluations;
+			objective_free(&o);
+		}
+		if (mine != STATUS_OK)
+#pragma omp critical
+			status = mine;
+	}
+	return status;
+}
+
+/* Ends on the full table: refines the places, then solves for kd and ks of the best one to a certified optimum. */
+static enum status finish_alone(struct search *s, struct place *place, int count, struct found *found)
+{
+	const struct table *full = &s->levels->table[SEARCH_LEVELS - 1];
+	const int threads = s->options->threads;
+	struct objective o;
+	enum status status = objective_init(&o, full, s->options, s->class, threads, MASKING_COARSE);
+
+	if (status != STATUS_OK)
+		return status;
+	for (int n = 0; n < count && status == STATUS_OK && s->dims > 0; n++)
+		status = refine(s, &o, &stages[SEARCH_LEVELS - 1], &place[n], &found->limited);
+	s->evaluations += o.evaluations;
+	objective_free(&o);
+	qsort(place, (size_t)count, sizeof *place, by_error);
+	if (status == STATUS_OK)
+		status = objective_init(&o, full, s->options, s->class, threads, MASKING_FINE);
+	if (status != STATUS_OK)
+		return status;
+	found->shape = shape_at(s, place[0].x);
+	objective_eval(&o, &found->shape, 1e-7, true, &found->linear);
+	s->evaluations += o.evaluations;
+	objective_free(&o);
+	return STATUS_OK;
+}
+
+/* One thread leads and the others of the team help with the passes. */
+static enum status finish(struct search *s, struct place *place, int count, struct found *found)
+{
+	enum status status = STATUS_OK;
+
+#pragma omp parallel num_threads(s->options->threads) if (s->options->threads > 1)
+#pragma omp single
+	status = finish_alone(s, place, count, found);
+	return status;
+}
+
+/* The next number in [0, 1) of the sequence splitmix64 (Steele et al. 2014). */
+static double next_uniform(uint64_t *state)
+{
+	uint64_t z = *state += 0x9e3779b97f4a7c15u;
+
+	z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+	z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+	return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
+}
+
+/* Random places, uniform in the coordinates. They start on the second table, which the scan has not seen: a valley that
+ * the coarsest one hides can still be found. */
+static void random_places(const struct search *s, struct place place[], int count)
+{
+	uint64_t state = s->options->seed;
+
+	for (int n = 0; n < count; n++)
+		for (int d = 0; d < s->dims; d++)
+			place[n].x[d] = s->lo[d] + (s->hi[d] - s->lo[d]) * next_uniform(&state);
+}
+
+/* How many of place[from .. count - 1] are within 0.1 % of the best of all. */
+static int agreeing(const struct place place[], int from, int count)
+{
+	double best = INFINITY;
+	int agree = 0;
+
+	for (int n = 0; n < count; n++)
+		best = fmin(best, place[n].error);
+	for (int n = from; n < count; n++)
+		agree += place[n].error <= 1.001 * best;
+	return agree;
+}
+
+/* The places to start from: valleys of the scan, then the given shapes. Returns how many, 0 on failure. */
+static int first_places(struct search *s, const struct shape given[], int n_given, struct place place[],
+			enum status *status)
+{
+	struct place *grid = calloc((size_t)grid_size(s, 0), sizeof *grid);
+	int count = 0;
+
+	*status = grid ? scan(s, grid) : STATUS_NO_MEMORY;
+	if (*status == STATUS_OK) {
+		count = pick_starts(s, grid, place);
+		if (count < 0)
+			*status = STATUS_NO_MEMORY;
+	}
+	free(grid);
+	for (int n = 0; n < n_given && *status == STATUS_OK; n++)
+		place_of(s, &given[n], place[count++].x);
+	return count;
+}
+
+/* Runs the stages from the first table to the full one. */
+static enum status descend(struct search *s, const struct shape given[], int n_given, struct found *found)
+{
+	const int n_random = s->options->starts;
+	struct place *place = calloc((size_t)(MOST_STARTS + SEARCH_GIVEN + n_random), sizeof *place);
+	enum status status = STATUS_NO_MEMORY;
+	int count = place ? first_places(s, given, n_given, place, &status) : 0;
+
+	found->starts = count + n_random;
+	for (int level = 0; level < SEARCH_LEVELS - 1 && status == STATUS_OK; level++) {
+		int from = 0;
+
+		if (level > 0)
+			from = count = thin_out(s, place, count, &stages[level]);
+		if (level == 1) {
+			random_places(s, place + count, n_random);
+			count += n_random;
+		}
+		status = refine_all(s, level, place, count);
+		if (level <= 1)
+			found->starts_agreeing += agreeing(place, from, count);
+	}
+	if (status == STATUS_OK)
+		status = finish(s, place, thin_out(s, place, count, &stages[SEARCH_LEVELS - 1]), found);
+	free(place);
+	return status;
+}
+
+enum status search_run(const struct levels *levels, const struct fit_options *options, const struct ndf_class *class,
+		       const struct shape given[], int n_given, struct found *found)
+{
+	struct search s = {.levels = levels, .options = options, .class = class};
+	struct place nowhere = {.error = 0};
+	enum status status;
+
+	*found = (struct found){.starts = 1};
+	setup(&s);
+	if (s.dims > 0) {
+		status = descend(&s, given, n_given, found);
+	} else {
+		found->starts_agreeing = 1;
+		status = finish(&s, &nowhere, 1, found);
+	}
+	found->evaluations = s.evaluations;
+	return cancelled(&s) ? STATUS_INTERRUPTED : status;
+}

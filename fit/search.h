@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* search - the best shape (sigma, gamma, ior, k) of one NDF: a scan of a thinned table, then nlopt on finer ones. */
+#ifndef SEARCH_H
+#define SEARCH_H
+
+#include "objective.h"
+
+enum { SEARCH_LEVELS = 4, SEARCH_DIMS = 4, SEARCH_GIVEN = 8 };
+
+/* struct levels - the table of a material and its thinned copies, coarsest first; the last is the full table. */
+struct levels {
+	struct table table[SEARCH_LEVELS];
+};
+
+/* levels_init - thins `full`, which the levels own from then on, whatever is returned. */
+MUST_CHECK enum status levels_init(struct levels *levels, struct table *full);
+void levels_free(struct levels *levels);
+
+/* struct found - where a search ended. */
+struct found {
+	struct shape shape;
+	struct linear linear;
+	int starts, starts_agreeing; /* local searches on the coarsest table; those within 0.1 % of the best there */
+	bool limited;                /* a limit on evaluations stopped the last local search */
+	long evaluations;
+};
+
+/* search_run - minimises E over the free parameters among sigma, gamma, ior and k.
+ * Given:   the shapes of simpler models that should start a local search too (n_given of them)
+ * Errors:  STATUS_NO_MEMORY, STATUS_INTERRUPTED */
+MUST_CHECK enum status search_run(const struct levels *levels, const struct fit_options *options,
+				  const struct ndf_class *class, const struct shape given[], int n_given,
+				  struct found *found);
+
+#endif

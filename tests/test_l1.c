@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The two-variable L1 solver against the exact minimum, found by trying every vertex. */
+#include "check.h"
+#include "l1.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { TERMS = 40 };
+
+struct problem {
+	int n;
+	double m[TERMS], a[TERMS], s[TERMS];
+	double lo[2], hi[2];
+};
+
+static double value(const struct problem *p, double x, double y, double slope[2])
+{
+	double sum = 0;
+
+	slope[0] = slope[1] = 0;
+	for (int n = 0; n < p->n; n++) {
+		const double r = p->m[n] - x * p->a[n] - y * p->s[n];
+
+		sum += fabs(r);
+		slope[0] -= copysign(p->a[n], r);
+		slope[1] -= copysign(p->s[n], r);
+	}
+	return sum;
+}
+
+static void try_point(const struct problem *p, double x, double y, double *best)
+{
+	double slope[2];
+
+	if (x >= p->lo[0] - 1e-12 && x <= p->hi[0] + 1e-12 && y >= p->lo[1] - 1e-12 && y <= p->hi[1] + 1e-12)
+		*best = fmin(*best, value(p, x, y, slope));
+}
+
+/* The minimum lies where two of these lines cross: residuals that vanish, edges of the box. */
+static double minimum(const struct problem *p)
+{
+	double a[TERMS + 4], b[TERMS + 4], c[TERMS + 4], best = INFINITY;
+	int lines = 0;
+
+	for (int n = 0; n < p->n; n++, lines++) {
+		a[lines] = p->a[n];
+		b[lines] = p->s[n];
+		c[lines] = p->m[n];
+	}
+	for (int side = 0; side < 4; side++, lines++) {
+		a[lines] = side < 2;
+		b[lines] = side >= 2;
+		c[lines] = side % 2 ? p->hi[side / 2] : p->lo[side / 2];
+	}
+	for (int i = 0; i < lines; i++)
+		for (int j = 0; j < i; j++) {
+			const double det = a[i] * b[j] - a[j] * b[i];
+
+			if (det != 0)
+				try_point(p, (c[i] * b[j] - c[j] * b[i]) / det, (a[i] * c[j] - a[j] * c[i]) / det, &best);
+		}
+	return best;
+}
+
+static double uniform(unsigned *seed)
+{
+	*seed = *seed * 1664525u + 1013904223u;
+	return (*seed >> 8) / (double)(1 << 24);
+}
+
+/* Solves and returns the number of looks; the curvature is withheld, as on tables too small to estimate it. */
+static int solve(const struct problem *p, const double start[2], double tolerance, struct l1 *l1)
+{
+	const double none[3] = {0, 0, 0};
+	double slope[2], scale = value(p, 0, 0, slope);
+
+	l1_start(l1, p->lo, p->hi, start, scale, tolerance, true);
+	while (!l1->done) {
+		const double error = value(p, l1->x[0], l1->x[1], slope);
+
+		l1_update(l1, error, slope, none);
+		assert_true(l1->looks <= L1_CUTS);
+	}
+	return l1->looks;
+}
+
+static void reaches_the_exact_minimum(void **state)
+{
+	unsigned seed = 7;
+
+	(void)state;
+	for (int trial = 0; trial < 400; trial++) {
+		struct problem p = {.n = 3 + trial % (TERMS - 3), .hi = {1, 1}};
+		const double truth[2] = {1.4 * uniform(&seed) - 0.2, 1.4 * uniform(&seed) - 0.2};
+		const double start[2] = {uniform(&seed), uniform(&seed)};
+		struct l1 l1;
+		double slope[2];
+
+		for (int n = 0; n < p.n; n++) {
+			p.a[n] = 0.3 + 0.1 * uniform(&seed);
+			/* The lobe: a few large values among many small ones. */
+			p.s[n] = pow(10, 4 * uniform(&seed) - 2);
+			p.m[n] = fmax(0, (truth[0] * p.a[n] + truth[1] * p.s[n]) * (0.4 + 1.2 * uniform(&seed)));
+		}
+		const double best = minimum(&p), scale = value(&p, 0, 0, slope);
+
+		solve(&p, start, 1e-7, &l1);
+		/* The solver looks at single-precision points only, which costs up to their rounding. */
+		check_abs(l1.error, best, 3e-7 * scale + 1e-9, "minimum");
+		assert_true(l1_lower_bound(&l1) <= best * (1 + 1e-12) + 1e-12);
+		check_abs(value(&p, l1.best[0], l1.best[1], slope), l1.error, 0, "best is where error was seen");
+	}
+}
+
+static void stays_in_the_box(void **state)
+{
+	struct problem p = {.n = 3, .m = {5, 6, 7}, .a = {1, 1, 1}, .s = {0.1, 0.2, 0.3}, .hi = {1, 1}};
+	const double start[2] = {-3, 9};
+	struct l1 l1;
+
+	(void)state;
+	solve(&p, start, 1e-9, &l1);
+	check_abs(l1.best[0], 1, 0, "kd at its bound");
+	check_abs(l1.best[1], 1, 0, "ks at its bound");
+	p.hi[0] = 0; /* a variable that is not there */
+	solve(&p, start, 1e-9, &l1);
+	check_abs(l1.best[0], 0, 0, "fixed kd");
+	check_abs(l1.best[1], 1, 0, "ks beside it");
+}
+
+static void one_variable_is_a_weighted_median(void **state)
+{
+	/* kd alone: the median of m / a weighted by a; weights 1, 2, 4 at 0.1, 0.5, 0.3 have it at 0.3. */
+	struct problem p = {.n = 3, .m = {0.1, 1, 1.2}, .a = {1, 2, 4}, .hi = {1, 0}};
+	const double start[2] = {0.9, 0};
+	struct l1 l1;
+
+	(void)state;
+	solve(&p, start, 1e-9, &l1);
+	check_rel(l1.best[0], 0.3, 1e-7, "weighted median");
+}
+
+static void all_zero_data_end_at_zero(void **state)
+{
+	struct problem p = {.n = 4, .a = {1, 1, 1, 1}, .s = {1, 2, 3, 4}, .hi = {1, 1}};
+	const double start[2] = {0.5, 0.5};
+	struct l1 l1;
+
+	(void)state;
+	solve(&p, start, 1e-9, &l1);
+	check_abs(l1.error, 0, 1e-6, "error");
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(reaches_the_exact_minimum),
+		cmocka_unit_test(stays_in_the_box),
+		cmocka_unit_test(one_variable_is_a_weighted_median),
+		cmocka_unit_test(all_zero_data_end_at_zero),
+	};
+
+	return cmocka_run_group_tests_name("l1", tests, NULL, NULL);
+}
