@@ -1,0 +1,295 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* stdfit compare - the NDFs side by side: errors per material, and what they come to in all. */
+#include "atomic_file.h"
+#include "batch.h"
+#include "report.h"
+#include "text_quote.h"
+
+#include <gsl/gsl_statistics_double.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* Columns: material, one error per NDF, winner, gains. */
+enum { GAINS = 2, COLUMNS_MAX = FIT_NDFS_MAX + 2 + GAINS, NAME_SIZE = 64 };
+
+struct comparison {
+	int n_ndf;
+	const char *ndf[FIT_NDFS_MAX]; /* names, borrowed from the rows */
+	char column_name[FIT_NDFS_MAX][NAME_SIZE];
+	struct csv_column column[COLUMNS_MAX];
+	double *value[FIT_NDFS_MAX + GAINS]; /* per NDF its errors, then the gains; one per material, NaN = none */
+	size_t n_materials;
+	int wins[FIT_NDFS_MAX], ties;
+	struct csv_table table;
+};
+
+static const char *const gain_over[GAINS] = {"ggx", "beckmann"};
+
+/* The place of an NDF in the list; -1 when it is not there. */
+static int ndf_place(const struct comparison *c, const char *ndf)
+{
+	for (int i = 0; i < c->n_ndf; i++)
+		if (!strcmp(c->ndf[i], ndf))
+			return i;
+	return -1;
+}
+
+/* Finds the NDFs of the rows, in the order in which they come first. */
+static enum status collect_ndfs(struct comparison *c, const struct csv_table *rows, struct error *error)
+{
+	for (size_t i = 0; i < rows->n_rows; i++) {
+		const char *ndf = rows->row[i][RESULT_NDF];
+		if (ndf_place(c, ndf) >= 0)
+			continue;
+		if (c->n_ndf == FIT_NDFS_MAX)
+			return error_set(error, STATUS_UNSUPPORTED, "expected at most %d NDFs", FIT_NDFS_MAX);
+		c->ndf[c->n_ndf++] = ndf;
+	}
+	return STATUS_OK;
+}
+
+static enum status name_columns(struct comparison *c, size_t n_rows)
+{
+	int n = 0;
+	c->column[n++] = (struct csv_column){"material", false};
+	for (int i = 0; i < c->n_ndf; i++) {
+		snprintf(c->column_name[i], NAME_SIZE, "error_%s", c->ndf[i]);
+		c->column[n++] = (struct csv_column){c->column_name[i], true};
+	}
+	c->column[n++] = (struct csv_column){"winner", false};
+	c->column[n++] = (struct csv_column){"gain_over_ggx", true};
+	c->column[n++] = (struct csv_column){"gain_over_beckmann", true};
+	c->table = csv_table_make(c->column, n);
+	for (int i = 0; i < c->n_ndf + GAINS; i++) {
+		c->value[i] = calloc(n_rows + 1, sizeof(double));
+		if (!c->value[i])
+			return STATUS_NO_MEMORY;
+	}
+	return STATUS_OK;
+}
+
+/* A line: numbers for the value columns, text for the two others. */
+static enum status add_line(struct comparison *c, const char *material, const double *number, const char *winner)
+{
+	char text[FIT_NDFS_MAX + GAINS][CSV_NUMBER_SIZE];
+	const char *cell[COLUMNS_MAX];
+	int n = 0;
+	cell[n++] = material;
+	for (int i = 0; i < c->n_ndf + GAINS; i++) {
+		if (i == c->n_ndf)
+			cell[n++] = winner;
+		cell[n++] = csv_number(text[i], number[i]);
+	}
+	return csv_table_add(&c->table, cell);
+}
+
+/* The NDF of the lowest error; "tie" when others have the same, "" when there is no error at all. */
+static const char *find_winner(struct comparison *c, const double *error)
+{
+	int best = -1, same = 0;
+	for (int i = 0; i < c->n_ndf; i++) {
+		if (isnan(error[i]))
+			continue;
+		if (best < 0 || error[i] < error[best]) {
+			best = i;
+			same = 1;
+		} else {
+			same += error[i] == error[best];
+		}
+	}
+	if (best < 0)
+		return "";
+	c->wins[best] += same == 1;
+	c->ties += same > 1;
+	return same > 1 ? "tie" : c->ndf[best];
+}
+
+/* How much lower STD's error is than that of gain_over[g], in percent of the latter. */
+static double find_gain(const struct comparison *c, const double *error, int g)
+{
+	const int std = ndf_place(c, "std"), other = ndf_place(c, gain_over[g]);
+	return std < 0 || other < 0 ? NAN : 100 * (1 - error[std] / error[other]);
+}
+
+/* Adds the line of rows[0 .. n-1], which are of one material. */
+static enum status add_material(struct comparison *c, char **const *rows, size_t n)
+{
+	double number[FIT_NDFS_MAX + GAINS];
+	for (int i = 0; i < c->n_ndf; i++)
+		number[i] = NAN;
+	for (size_t i = 0; i < n; i++)
+		number[ndf_place(c, rows[i][RESULT_NDF])] = result_number(rows[i], RESULT_ERROR);
+	for (int g = 0; g < GAINS; g++)
+		number[c->n_ndf + g] = find_gain(c, number, g);
+	for (int i = 0; i < c->n_ndf + GAINS; i++)
+		c->value[i][c->n_materials] = number[i];
+	c->n_materials++;
+	return add_line(c, rows[0][RESULT_MATERIAL], number, find_winner(c, number));
+}
+
+static int material_order(const void *a, const void *b)
+{
+	char *const *row_a = *(char **const *)a, *const *row_b = *(char **const *)b;
+	const int order = strcmp(row_a[RESULT_MATERIAL], row_b[RESULT_MATERIAL]);
+	return order ? order : strcmp(row_a[RESULT_PATH], row_b[RESULT_PATH]);
+}
+
+static enum status add_materials(struct comparison *c, struct csv_table *rows)
+{
+	qsort(rows->row, rows->n_rows, sizeof(*rows->row), material_order);
+	for (size_t start = 0, end; start < rows->n_rows; start = end) {
+		for (end = start + 1; end < rows->n_rows; end++)
+			if (material_order(&rows->row[start], &rows->row[end]))
+				break;
+		if (add_material(c, rows->row + start, end - start))
+			return STATUS_NO_MEMORY;
+	}
+	return STATUS_OK;
+}
+
+/* Mean, median and worst of each value column; of gains the smallest is the worst. */
+static enum status add_summary(struct comparison *c)
+{
+	double mean[FIT_NDFS_MAX + GAINS], median[FIT_NDFS_MAX + GAINS], worst[FIT_NDFS_MAX + GAINS],
+		wins[FIT_NDFS_MAX + GAINS];
+	for (int i = 0; i < c->n_ndf + GAINS; i++) {
+		double *x = c->value[i];
+		size_t n = 0;
+		for (size_t m = 0; m < c->n_materials; m++)
+			if (!isnan(x[m]))
+				x[n++] = x[m];
+		const bool error = i < c->n_ndf;
+		wins[i] = error ? (double)c->wins[i] : (double)NAN;
+		mean[i] = n ? gsl_stats_mean(x, 1, n) : NAN;
+		worst[i] = !n ? NAN : error ? gsl_stats_max(x, 1, n) : gsl_stats_min(x, 1, n);
+		median[i] = n ? gsl_stats_median(x, 1, n) : NAN;
+	}
+	char ties[NAME_SIZE];
+	snprintf(ties, sizeof ties, "%d %s", c->ties, c->ties == 1 ? "tie" : "ties");
+	if (add_line(c, "(mean)", mean, "") || add_line(c, "(median)", median, "") ||
+	    add_line(c, "(worst)", worst, "") || add_line(c, "(wins)", wins, ties))
+		return STATUS_NO_MEMORY;
+	return STATUS_OK;
+}
+
+static void comparison_free(struct comparison *c)
+{
+	for (int i = 0; i < c->n_ndf + GAINS; i++)
+		free(c->value[i]);
+	csv_table_free(&c->table);
+}
+
+static enum status write_output(const struct options *options, const struct csv_table *table, struct error *error)
+{
+	struct atomic_file file;
+	if (options_show(options) != SHOW_NOTHING)
+		report_output(table, options_show(options), report_table);
+	if (!options->output)
+		return STATUS_OK;
+	const enum status status = atomic_file_open(&file, options->output, error);
+	if (status)
+		return status;
+	(options->json ? report_json : report_csv)(file.stream, table);
+	return atomic_file_commit(&file, error);
+}
+
+/* Compares the rows, which get reordered, and writes the outcome. */
+static enum status compare(const struct options *options, struct csv_table *rows, struct error *error)
+{
+	struct comparison c = {.n_ndf = 0};
+	enum status status = collect_ndfs(&c, rows, error);
+	if (!status) {
+		if (name_columns(&c, rows->n_rows) || add_materials(&c, rows) || add_summary(&c))
+			status = error_set(error, STATUS_NO_MEMORY, "out of memory");
+		else
+			status = write_output(options, &c.table, error);
+	}
+	comparison_free(&c);
+	return status;
+}
+
+/* Rows that can be compared were made with the same options. */
+static enum status check_rows(const struct csv_table *rows, const char *path, struct error *error)
+{
+	char name[TEXT_QUOTE_SIZE];
+	text_quote(path, name, sizeof name);
+	if (!rows->n_rows)
+		return error_set(error, STATUS_NO_DATA, "'%s' has no rows to compare", name);
+	for (size_t i = 1; i < rows->n_rows; i++)
+		if (strcmp(rows->row[0][RESULT_OPTIONS], rows->row[i][RESULT_OPTIONS]))
+			return error_set(error, STATUS_FORMAT, "'%s' row %zu: made with other options than row 1", name,
+					 i + 1);
+	return STATUS_OK;
+}
+
+static int compare_table(const struct options *options)
+{
+	struct error error;
+	struct csv_table rows = csv_table_make(result_columns, RESULT_COLUMNS);
+	static const char *const useful[] = {"output", "json", "table", NULL};
+	const char *path = options->path[0], *ignored = options_given_beside(options, useful);
+	if (ignored)
+		return options_usage(COMMAND_COMPARE, "--%s means nothing for a table that is there already", ignored);
+	if (options->n_paths > 1)
+		return options_usage(COMMAND_COMPARE, "expected one table and nothing beside it, found %d paths",
+				     options->n_paths);
+	enum status status = csv_table_read(&rows, path, RESULT_ERROR + 1, NULL, &error);
+	if (!status)
+		status = check_rows(&rows, path, &error);
+	if (!status)
+		status = compare(options, &rows, &error);
+	if (status)
+		report_error("%s", error.text);
+	csv_table_free(&rows);
+	return status ? EXIT_FAILED : EXIT_DONE;
+}
+
+/* Fits, then compares what came out. */
+static int compare_fits(const struct options *options)
+{
+	struct files files;
+	struct batch batch;
+	struct error error = {""};
+	struct csv_table rows = csv_table_make(result_columns, RESULT_COLUMNS);
+	const int bad = files_collect(&files, options->path, options->n_paths, options->recursive);
+	if (bad < 0 || batch_init(&batch, options, &files)) {
+		files_free(&files);
+		return EXIT_FAILED;
+	}
+	int code = files.n ? batch_run(&batch) : EXIT_FAILED;
+	enum status status = STATUS_OK;
+	for (size_t i = 0; i < batch.n && !status; i++)
+		if (csv_table_move(&rows, &batch.file[i].rows))
+			status = error_set(&error, STATUS_NO_MEMORY, "out of memory");
+	if (!status && rows.n_rows && code != EXIT_INTERRUPTED)
+		status = compare(options, &rows, &error);
+	if (status)
+		report_error("%s", error.text);
+	csv_table_free(&rows);
+	batch_free(&batch);
+	files_free(&files);
+	return code == EXIT_DONE && (bad || status) ? EXIT_FAILED : code;
+}
+
+static bool is_table(const char *path)
+{
+	const size_t length = strlen(path);
+	return length > 4 && !strcasecmp(path + length - 4, ".csv");
+}
+
+int cmd_compare(int argc, char **argv, atomic_bool *cancel)
+{
+	struct options options;
+	const int code = options_parse(&options, COMMAND_COMPARE, argc, argv, cancel);
+	if (code >= 0)
+		return code;
+	for (int i = 0; i < options.n_paths; i++)
+		if (is_table(options.path[i])) {
+			char *path = options.path[0];
+			options.path[0] = options.path[i];
+			options.path[i] = path;
+			return compare_table(&options);
+		}
+	return compare_fits(&options);
+}

@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* stdfit fit - MERL files to a result table. */
+#include "atomic_file.h"
+#include "batch.h"
+#include "report.h"
+
+#include <errno.h>
+#include <string.h>
+
+struct sink {
+	const struct options *options;
+	struct batch *batch;
+	enum show show;
+	bool stored; /* rows go to the store, too */
+	struct store store;
+	struct csv_table rows; /* all new rows, in order of the files */
+	size_t next;           /* the file whose rows are shown next */
+	bool headed;           /* standard output has its heading */
+	bool broken;           /* writing failed */
+	struct error error;    /* why */
+};
+
+static void show_rows(struct sink *sink, const struct csv_table *rows)
+{
+	if (sink->show == SHOW_READABLE) {
+		report_fits(stdout, rows, !sink->headed && rows->n_rows);
+		sink->headed |= rows->n_rows > 0;
+	} else if (sink->show == SHOW_CSV) {
+		for (size_t i = 0; i < rows->n_rows; i++)
+			csv_write_row(stdout, rows->row[i], rows->n_columns);
+	}
+}
+
+/* Shows and keeps the rows of all files that are done, up to the first that is not; `all`: past it, too. */
+static bool advance(struct sink *sink, bool all)
+{
+	errno = 0;
+	for (; sink->next < sink->batch->n; sink->next++) {
+		struct batch_file *file = &sink->batch->file[sink->next];
+		if (!file->done && !all)
+			break;
+		show_rows(sink, &file->rows);
+		if (csv_table_move(&sink->rows, &file->rows)) {
+			error_set(&sink->error, STATUS_NO_MEMORY, "out of memory");
+			return false;
+		}
+	}
+	if (!fflush(stdout) && !ferror(stdout))
+		return true;
+	error_set(&sink->error, STATUS_IO, "cannot write standard output: %s", strerror(errno));
+	return false;
+}
+
+static bool file_done(void *user, struct batch_file *file)
+{
+	struct sink *sink = user;
+	if (sink->stored) {
+		const struct result_source source = batch_source(sink->batch, file);
+		store_drop_stale(&sink->store, &source);
+		sink->broken = store_append(&sink->store, &file->rows, &sink->error) != STATUS_OK;
+	}
+	if (!sink->broken)
+		sink->broken = !advance(sink, false);
+	return !sink->broken;
+}
+
+/* Writes all rows as JSON in the place of an older file, which is kept beside it. */
+static enum status write_json(struct sink *sink)
+{
+	struct atomic_file file;
+	enum status status = store_backup(sink->options->output, &sink->error);
+	if (!status)
+		status = atomic_file_open(&file, sink->options->output, &sink->error);
+	if (status)
+		return status;
+	report_json(file.stream, &sink->rows);
+	return atomic_file_commit(&file, &sink->error);
+}
+
+/* What is written when all files are done, or what could be done of them. */
+static enum status finish(struct sink *sink, bool complete)
+{
+	if (!advance(sink, true))
+		return STATUS_IO;
+	if (sink->show == SHOW_JSON)
+		report_json(stdout, &sink->rows);
+	if (sink->options->json && sink->options->output && sink->rows.n_rows)
+		return write_json(sink);
+	if (sink->stored && complete)
+		return store_rewrite(&sink->store, &sink->rows, &sink->error);
+	return STATUS_OK;
+}
+
+static int run(struct sink *sink, struct batch *batch)
+{
+	if (sink->stored && store_open(&sink->store, sink->options->output, sink->options->resume, &sink->error)) {
+		report_error("%s", sink->error.text);
+		return EXIT_FAILED;
+	}
+	if (sink->stored)
+		batch->store = &sink->store;
+	if (sink->show == SHOW_CSV)
+		csv_write_header(stdout, result_columns, RESULT_COLUMNS);
+	batch->done = file_done;
+	batch->user = sink;
+	int code = batch_run(batch);
+	if (!sink->broken && finish(sink, code != EXIT_INTERRUPTED)) {
+		sink->broken = true;
+		code = EXIT_FAILED;
+	}
+	if (sink->broken)
+		report_error("%s", sink->error.text);
+	return code;
+}
+
+int cmd_fit(int argc, char **argv, atomic_bool *cancel)
+{
+	struct options options;
+	int code = options_parse(&options, COMMAND_FIT, argc, argv, cancel);
+	if (code >= 0)
+		return code;
+	struct files files;
+	const int bad = files_collect(&files, options.path, options.n_paths, options.recursive);
+	struct batch batch;
+	if (bad < 0 || batch_init(&batch, &options, &files)) {
+		files_free(&files);
+		return EXIT_FAILED;
+	}
+	struct sink sink = {.options = &options,
+			    .batch = &batch,
+			    .show = options_show(&options),
+			    .stored = options.output && !options.json,
+			    .rows = csv_table_make(result_columns, RESULT_COLUMNS)};
+	code = files.n ? run(&sink, &batch) : EXIT_FAILED;
+	csv_table_free(&sink.rows);
+	if (sink.stored)
+		store_close(&sink.store);
+	batch_free(&batch);
+	files_free(&files);
+	return code == EXIT_DONE && bad ? EXIT_FAILED : code;
+}

@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "option_value.h"
+#include "csv.h"
+#include "text_quote.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FIT (1u << COMMAND_FIT)
+#define COMPARE (1u << COMMAND_COMPARE)
+#define EVAL (1u << COMMAND_EVAL)
+#define INFO (1u << COMMAND_INFO)
+#define SYNTH (1u << COMMAND_SYNTH)
+#define FITS (FIT | COMPARE)
+#define MODEL (EVAL | SYNTH)
+#define AT(member) offsetof(struct options, member)
+
+const struct option_spec option_specs[] = {
+	{"output", 'o', KIND_TEXT, FITS, NOT_RECORDED, "FILE",
+	 "write the table there; an older FILE becomes FILE~ unless --resume is given", AT(output), 0, 0},
+	{"json", 0, KIND_ON, FITS | EVAL | INFO, NOT_RECORDED, NULL, "JSON instead of CSV", AT(json), 0, 0},
+	{"table", 0, KIND_ON, FITS | EVAL | INFO, NOT_RECORDED, NULL,
+	 "a readable table on standard output even if that is no terminal", AT(readable), 0, 0},
+	{"resume", 0, KIND_ON, FIT, NOT_RECORDED, NULL,
+	 "keep the rows of -o FILE that were made from the same bytes with the same options", AT(resume), 0, 0},
+	{"recursive", 'r', KIND_ON, FITS, NOT_RECORDED, NULL, "directories: take the files below them too",
+	 AT(recursive), 0, 0},
+	{"quiet", 'q', KIND_ON, FITS, NOT_RECORDED, NULL, "no progress line, no summary", AT(quiet), 0, 0},
+	{"threads", 0, KIND_INT, FITS | MODEL, NOT_RECORDED, "N", "threads; changes no result", AT(fit.threads), 1,
+	 1024},
+	{"ndf", 0, KIND_NDFS, FITS, RECORDED_WITHIN, "LIST", "NDFs to fit, separated by commas", AT(fit.ndf), 0, 0},
+	{"ndf", 0, KIND_NDFS, MODEL, NOT_RECORDED, "NAME", "NDF of the model", AT(fit.ndf), 0, 0},
+	{"gaf", 0, KIND_GAF, FITS | MODEL, RECORDED, "NAME", "masking and shadowing G", AT(fit.gaf), 0, 0},
+	{"fresnel", 0, KIND_FRESNEL, FITS | MODEL, RECORDED, "NAME", "Fresnel term F", AT(fit.fresnel), 0, 0},
+	{"weight", 0, KIND_WEIGHT, FITS, RECORDED, "NAME", "how an entry counts in the error", AT(fit.weight), 0, 0},
+	{"bins", 0, KIND_BINS, FITS | MODEL | INFO, RECORDED, "NAME", "where the entries of a table stand",
+	 AT(fit.bins), 0, 0},
+	{"max-theta", 0, KIND_NUMBER, FITS | EVAL, RECORDED, "DEG",
+	 "leave out entries whose theta_i or theta_o exceeds this", AT(fit.max_theta), 1, 90},
+	{"unbounded", 0, KIND_ON, FITS, RECORDED, NULL, "kd and ks may exceed 1", AT(fit.unbounded), 0, 0},
+	{"no-diffuse", 0, KIND_OFF, FITS, RECORDED, NULL, "kd = 0", AT(fit.diffuse), 0, 0},
+	{"no-specular", 0, KIND_OFF, FITS, RECORDED, NULL, "ks = 0", AT(fit.specular), 0, 0},
+	{"gray", 0, KIND_ON, FITS, RECORDED, NULL, "one kd and one ks for the three channels", AT(fit.gray), 0, 0},
+	{"ior", 0, KIND_NUMBER, FITS, RECORDED, "N", "fix the index of refraction", AT(fit.ior), FIT_IOR_MIN,
+	 FIT_IOR_MAX},
+	{"gamma", 0, KIND_GAMMA, FITS, RECORDED, "G", "fix STD's gamma (inf is Beckmann)", AT(fit.gamma), FIT_GAMMA_MIN,
+	 FIT_GAMMA_MAX},
+	{"sigma", 0, KIND_NUMBER, FITS, RECORDED, "S", "fix the roughness", AT(fit.sigma), FIT_SIGMA_MIN,
+	 FIT_SIGMA_MAX},
+	{"starts", 0, KIND_INT, FITS, RECORDED, "N", "more searches, from random shapes", AT(fit.starts), 0, 100000},
+	{"seed", 0, KIND_SEED, FITS, RECORDED, "N", "seed of the random shapes", AT(fit.seed), 0, 0},
+	{"within", 0, KIND_PERCENT, FIT, RECORDED_WITHIN, "P%",
+	 "per material only the simplest model whose error is within P% of the best", AT(within), 0, 1000},
+	{"sigma", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "S", "roughness", AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
+	{"gamma", 0, KIND_GAMMA, MODEL, NOT_RECORDED, "G", "STD's gamma (inf is Beckmann)", AT(fit.gamma),
+	 FIT_GAMMA_MIN, FIT_GAMMA_MAX},
+	{"ior", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "N", "index of refraction", AT(fit.ior), FIT_IOR_MIN, FIT_IOR_MAX},
+	{"k", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "K", "imaginary part of a conductor's index", AT(k), 0, FIT_K_MAX},
+	{"kd", 0, KIND_RGB, MODEL, NOT_RECORDED, "R,G,B", "diffuse factors", AT(kd), 0, 1e6},
+	{"ks", 0, KIND_RGB, MODEL, NOT_RECORDED, "R,G,B", "specular factors", AT(ks), 0, 1e6},
+	{"from", 0, KIND_TEXT, EVAL, NOT_RECORDED, "FILE.csv",
+	 "take the model from the row of this material (and --ndf, if given)", AT(from), 0, 0},
+	{"row", 0, KIND_INT, EVAL, NOT_RECORDED, "N", "take row N of --from, counted from 1", AT(row), 1, INT_MAX},
+	{"phi", 0, KIND_PHI, SYNTH, NOT_RECORDED, "180|360", "entries along phi_d", AT(n_phi_d), 0, 0},
+	{"noise", 0, KIND_NUMBER, SYNTH, NOT_RECORDED, "REL", "standard deviation of a factor 1 + noise on each value",
+	 AT(noise), 0, 10},
+	{"seed", 0, KIND_SEED, SYNTH, NOT_RECORDED, "N", "seed of the noise", AT(fit.seed), 0, 0},
+	{NULL, 0, KIND_ON, 0, NOT_RECORDED, NULL, NULL, 0, 0, 0},
+};
+
+_Static_assert(sizeof option_specs / sizeof *option_specs <= OPTIONS_MAX, "struct options.given has a bit per option");
+
+const char *option_choice(enum option_kind kind, int i)
+{
+	switch (kind) {
+	case KIND_NDFS:
+		return ndf_at(i) ? ndf_name(ndf_at(i)) : NULL;
+	case KIND_GAF:
+		return i < GAF_COUNT ? gaf_name((enum gaf)i) : NULL;
+	case KIND_FRESNEL:
+		return i < FRESNEL_COUNT ? fresnel_name((enum fresnel)i) : NULL;
+	case KIND_WEIGHT:
+		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
+	case KIND_BINS:
+		return i < BINS_COUNT ? bins_name((enum bins)i) : NULL;
+	default:
+		return NULL;
+	}
+}
+
+static enum status choice_find(enum option_kind kind, const char *text, void *value)
+{
+	switch (kind) {
+	case KIND_GAF:
+		return gaf_find(text, value);
+	case KIND_FRESNEL:
+		return fresnel_find(text, value);
+	case KIND_WEIGHT:
+		return weight_find(text, value);
+	default:
+		return bins_find(text, value);
+	}
+}
+
+/* Values from text. Each returns STATUS_DOMAIN, with what was expected, when the text is none. */
+
+static enum status expected_range(const struct option_spec *spec, struct error *error)
+{
+	char min[CSV_NUMBER_SIZE], max[CSV_NUMBER_SIZE];
+	return error_set(error, STATUS_DOMAIN, "expected a%s number from %s to %s%s",
+			 spec->kind == KIND_INT ? " whole" : "", csv_number(min, spec->min), csv_number(max, spec->max),
+			 spec->kind == KIND_GAMMA ? ", or inf" : "");
+}
+
+static bool in_range(const struct option_spec *spec, double x)
+{
+	return (x >= spec->min && x <= spec->max) || (spec->kind == KIND_GAMMA && x == INFINITY);
+}
+
+static enum status parse_number(const struct option_spec *spec, const char *text, double *value, struct error *error)
+{
+	double x;
+	if (!*text || !csv_parse_number(text, &x) || !in_range(spec, x))
+		return expected_range(spec, error);
+	*value = x;
+	return STATUS_OK;
+}
+
+static enum status parse_percent(const struct option_spec *spec, const char *text, double *value, struct error *error)
+{
+	char number[CSV_NUMBER_SIZE];
+	const size_t length = strlen(text), percent = length && text[length - 1] == '%';
+	if (length >= sizeof number)
+		return expected_range(spec, error);
+	memcpy(number, text, length - percent);
+	number[length - percent] = '\0';
+	return parse_number(spec, number, value, error);
+}
+
+static enum status parse_int(const struct option_spec *spec, const char *text, int *value, struct error *error)
+{
+	char *end;
+	errno = 0;
+	const long x = strtol(text, &end, 10);
+	if (end == text || *end || errno || !in_range(spec, (double)x))
+		return expected_range(spec, error);
+	*value = (int)x;
+	return STATUS_OK;
+}
+
+static enum status parse_seed(const char *text, uint64_t *value, struct error *error)
+{
+	char *end;
+	errno = 0;
+	const unsigned long long x = strtoull(text, &end, 10);
+	if (text[strspn(text, "0123456789")] || end == text || errno)
+		return error_set(error, STATUS_DOMAIN, "expected a whole number from 0 to %" PRIu64, UINT64_MAX);
+	*value = x;
+	return STATUS_OK;
+}
+
+static enum status parse_phi(const char *text, int *value, struct error *error)
+{
+	if (strcmp(text, "180") && strcmp(text, "360"))
+		return error_set(error, STATUS_DOMAIN, "expected 180 or 360");
+	*value = strcmp(text, "180") ? 360 : 180;
+	return STATUS_OK;
+}
+
+/* Copies the part of a list before the next comma; returns what stands behind that, NULL at the end. */
+static const char *next_item(const char *text, char *item, size_t size)
+{
+	const size_t length = strcspn(text, ",");
+	snprintf(item, size, "%.*s", (int)length, text);
+	return text[length] ? text + length + 1 : NULL;
+}
+
+static enum status parse_rgb(const struct option_spec *spec, const char *text, double value[3], struct error *error)
+{
+	char item[CSV_NUMBER_SIZE];
+	double rgb[3] = {0, 0, 0};
+	int n = 0;
+	for (const char *rest = text; rest; n++) {
+		rest = next_item(rest, item, sizeof item);
+		if (n == 3 || parse_number(spec, item, &rgb[n], NULL))
+			return error_set(error, STATUS_DOMAIN, "expected R,G,B or one number, each from %g to %g",
+					 spec->min, spec->max);
+	}
+	if (n == 2)
+		return error_set(error, STATUS_DOMAIN, "expected three numbers R,G,B or one, found two");
+	for (int c = 0; c < 3; c++)
+		value[c] = rgb[n == 3 ? c : 0];
+	return STATUS_OK;
+}
+
+static enum status expected_choice(enum option_kind kind, struct error *error)
+{
+	char names[256] = "";
+	for (int i = 0; option_choice(kind, i); i++) {
+		strncat(names, i ? ", " : "", sizeof names - strlen(names) - 1);
+		strncat(names, option_choice(kind, i), sizeof names - strlen(names) - 1);
+	}
+	return error_set(error, STATUS_DOMAIN, "expected one of %s", names);
+}
+
+static enum status parse_ndfs(const char *text, struct fit_options *fit, struct error *error)
+{
+	char name[64], shown[TEXT_QUOTE_SIZE];
+	int n = 0;
+	for (const char *rest = text; rest; n++) {
+		rest = next_item(rest, name, sizeof name);
+		const struct ndf_class *ndf = ndf_find(name);
+		if (!ndf)
+			return expected_choice(KIND_NDFS, error);
+		text_quote(name, shown, sizeof shown);
+		for (int i = 0; i < n; i++)
+			if (fit->ndf[i] == ndf)
+				return error_set(error, STATUS_DOMAIN, "'%s' stands there twice", shown);
+		if (n == FIT_NDFS_MAX)
+			return error_set(error, STATUS_DOMAIN, "expected at most %d names", FIT_NDFS_MAX);
+		fit->ndf[n] = ndf;
+	}
+	fit->n_ndf = n;
+	return STATUS_OK;
+}
+
+enum status option_parse(struct options *options, const struct option_spec *spec, const char *text, struct error *error)
+{
+	void *value = (char *)options + spec->offset;
+	switch (spec->kind) {
+	case KIND_ON:
+	case KIND_OFF:
+		*(bool *)value = spec->kind == KIND_ON;
+		return STATUS_OK;
+	case KIND_TEXT:
+		*(const char **)value = text;
+		return *text ? STATUS_OK : error_set(error, STATUS_DOMAIN, "expected a name");
+	case KIND_INT:
+		return parse_int(spec, text, value, error);
+	case KIND_SEED:
+		return parse_seed(text, value, error);
+	case KIND_NUMBER:
+	case KIND_GAMMA:
+		return parse_number(spec, text, value, error);
+	case KIND_PERCENT:
+		return parse_percent(spec, text, value, error);
+	case KIND_RGB:
+		return parse_rgb(spec, text, value, error);
+	case KIND_PHI:
+		return parse_phi(text, value, error);
+	case KIND_NDFS:
+		return parse_ndfs(text, &options->fit, error);
+	default:
+		return choice_find(spec->kind, text, value) ? expected_choice(spec->kind, error) : STATUS_OK;
+	}
+}
+
+/* Values as text */
+
+static void write_ndfs(FILE *file, const struct fit_options *fit)
+{
+	for (int i = 0; i < fit->n_ndf; i++)
+		fprintf(file, "%s%s", i ? "," : "", ndf_name(fit->ndf[i]));
+}
+
+void option_write(FILE *file, const struct options *options, const struct option_spec *spec)
+{
+	const void *value = (const char *)options + spec->offset;
+	char number[CSV_NUMBER_SIZE];
+	switch (spec->kind) {
+	case KIND_ON:
+	case KIND_OFF:
+		fputs(*(const bool *)value == (spec->kind == KIND_ON) ? "yes" : "no", file);
+		break;
+	case KIND_TEXT:
+		fputs(*(const char *const *)value ? *(const char *const *)value : "", file);
+		break;
+	case KIND_INT:
+	case KIND_PHI:
+		fprintf(file, "%d", *(const int *)value);
+		break;
+	case KIND_SEED:
+		fprintf(file, "%" PRIu64, *(const uint64_t *)value);
+		break;
+	case KIND_NUMBER:
+	case KIND_GAMMA:
+	case KIND_PERCENT:
+	case KIND_RGB:
+		fputs(isnan(*(const double *)value) ? "free" : csv_number(number, *(const double *)value), file);
+		break;
+	case KIND_NDFS:
+		write_ndfs(file, &options->fit);
+		break;
+	case KIND_GAF:
+		fputs(gaf_name(*(const enum gaf *)value), file);
+		break;
+	case KIND_FRESNEL:
+		fputs(fresnel_name(*(const enum fresnel *)value), file);
+		break;
+	case KIND_WEIGHT:
+		fputs(weight_name(*(const enum weight *)value), file);
+		break;
+	case KIND_BINS:
+		fputs(bins_name(*(const enum bins *)value), file);
+		break;
+	}
+}

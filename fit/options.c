@@ -1,0 +1,335 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "options.h"
+#include "option_value.h"
+#include "report.h"
+#include "text_quote.h"
+
+#include <getopt.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const struct {
+	const char *name, *arguments, *summary, *help;
+} commands[COMMAND_COUNT] = {
+	[COMMAND_FIT] = {"fit", "PATH...", "fit MERL files",
+			 "Fits a Cook-Torrance model with each NDF to each MERL file. A directory stands for\n"
+			 "every *.binary in it. A terminal shows a readable table, a pipe gets CSV. With -o, rows\n"
+			 "are appended as files are done and put in order at the end, so that Ctrl-C or a kill\n"
+			 "loses nothing that was done; --resume goes on from there.\n"},
+	[COMMAND_COMPARE] = {"compare", "PATH...", "errors of the NDFs side by side, per material and in all",
+			     "Fits MERL files or directories, or takes one result table (FILE.csv) as it is. Shows\n"
+			     "the error of each NDF, the winner, by how much STD's error is lower than GGX's and\n"
+			     "Beckmann's (in % of theirs), then mean, median, worst and wins.\n"},
+	[COMMAND_EVAL] = {"eval", "FILE", "error of given parameters, no fit",
+			  "Measures how far a model is from a MERL file, under every weight and metric. The model\n"
+			  "comes from options, or from rows of a result table (--from), which also bring their\n"
+			  "G, Fresnel term, bins and largest theta.\n"},
+	[COMMAND_INFO] = {"info", "FILE...", "what is in a MERL file: validity, ranges, suspects",
+			  "Shows size, hash, valid, negative and non-finite entries, and the range of the valid\n"
+			  "values above the horizon per channel (1/sr).\n"},
+	[COMMAND_SYNTH] = {"synth", "OUT.binary", "write a MERL file of a model",
+			   "Writes the table that an ideal measurement of the model would give; -1 below the\n"
+			   "horizon.\n"},
+};
+
+static bool spec_applies(const struct option_spec *spec, enum command command)
+{
+	return spec->commands & 1u << command;
+}
+
+char *options_text(const struct options *options)
+{
+	char *text = NULL;
+	size_t size;
+	FILE *file = open_memstream(&text, &size);
+	if (!file)
+		return NULL;
+	const char *between = "";
+	for (const struct option_spec *spec = option_specs; spec->name; spec++) {
+		if (spec->recorded == NOT_RECORDED || (spec->recorded == RECORDED_WITHIN && isnan(options->within)))
+			continue;
+		fprintf(file, "%s%s=", between, spec->name);
+		option_write(file, options, spec);
+		between = " ";
+	}
+	const bool failed = ferror(file);
+	if (fclose(file) || failed) {
+		free(text);
+		return NULL;
+	}
+	return text;
+}
+
+/* Help */
+
+static bool has_default(const struct options *defaults, const struct option_spec *spec)
+{
+	if (!spec->argument || spec->kind == KIND_TEXT || spec->kind == KIND_PERCENT)
+		return false;
+	const void *value = (const char *)defaults + spec->offset;
+	if (spec->kind == KIND_INT)
+		return *(const int *)value >= spec->min;
+	/* A free number is a default of a fit; a model needs one. */
+	return spec->recorded != NOT_RECORDED || (spec->kind != KIND_NUMBER && spec->kind != KIND_GAMMA) ||
+	       !isnan(*(const double *)value);
+}
+
+enum { HELP_WIDTH = 22 };
+
+static void print_option(const struct options *defaults, const struct option_spec *spec)
+{
+	char name[64];
+	snprintf(name, sizeof name, "--%s %s", spec->name, spec->argument ? spec->argument : "");
+	if (spec->letter)
+		printf("  -%c, %-*s%s", spec->letter, HELP_WIDTH, name, spec->help);
+	else
+		printf("      %-*s%s", HELP_WIDTH, name, spec->help);
+	for (int i = 0; option_choice(spec->kind, i); i++)
+		printf("%s%s", i ? ", " : ": ", option_choice(spec->kind, i));
+	if (has_default(defaults, spec)) {
+		printf(" (default: ");
+		option_write(stdout, defaults, spec);
+		printf(")");
+	}
+	printf("\n");
+}
+
+static void print_help(const struct options *defaults)
+{
+	const enum command command = defaults->command;
+	printf("usage: stdfit %s%s%s [OPTION]... %s\n\n%s\noptions:\n", command == COMMAND_FIT ? "[" : "",
+	       commands[command].name, command == COMMAND_FIT ? "]" : "", commands[command].arguments,
+	       commands[command].help);
+	for (const struct option_spec *spec = option_specs; spec->name; spec++)
+		if (spec_applies(spec, command))
+			print_option(defaults, spec);
+	printf("  -h, %-*sthis text\n", HELP_WIDTH, "--help");
+	printf("\nexit code: 0 done, 1 some file failed, 2 wrong usage, 130 interrupted\n");
+}
+
+void options_overview(void)
+{
+	printf("stdfit fits Cook-Torrance models with STD, GGX and Beckmann NDFs to measured BRDFs.\n\n");
+	for (enum command c = 0; c < COMMAND_COUNT; c++)
+		printf("  stdfit %-7s %-10s  %s\n", c == COMMAND_FIT ? "[fit]" : commands[c].name,
+		       commands[c].arguments, commands[c].summary);
+	printf("\n`stdfit COMMAND --help` tells its options, `stdfit --version` the versions of the program and its "
+	       "libraries.\n");
+}
+
+enum command options_find_command(const char *name)
+{
+	enum command c = 0;
+	while (c < COMMAND_COUNT && strcmp(commands[c].name, name))
+		c++;
+	return c;
+}
+
+/* The command line */
+
+int options_usage(enum command command, const char *format, ...)
+{
+	struct error text;
+	va_list list;
+	va_start(list, format);
+	vsnprintf(text.text, sizeof text.text, format, list);
+	va_end(list);
+	report_error("%s (see stdfit %s --help)", text.text, commands[command].name);
+	return EXIT_USAGE;
+}
+
+static struct options options_default(enum command command)
+{
+	struct options options = {
+		.fit = fit_options_default(),
+		.command = command,
+		.within = NAN,
+		.n_phi_d = 180,
+		.ks = {0, 0, 0},
+		.kd = {0, 0, 0},
+	};
+	if (command == COMMAND_EVAL || command == COMMAND_SYNTH) {
+		options.fit.n_ndf = 1;
+		options.fit.ior = 1.5;
+	}
+	return options;
+}
+
+enum { LONG_OPTION = 256 }; /* what getopt_long returns for row i of the table is this + i */
+
+/* Fills getopt_long's own table and short letters; see options_parse for their room. */
+static void fill_getopt(enum command command, struct option *longs, char *letters)
+{
+	*letters++ = ':'; /* tell a missing argument from an unknown option */
+	*letters++ = 'h';
+	*longs++ = (struct option){"help", no_argument, NULL, 'h'};
+	for (int i = 0; option_specs[i].name; i++) {
+		if (!spec_applies(&option_specs[i], command))
+			continue;
+		const int argument = option_specs[i].argument ? required_argument : no_argument;
+		*longs++ = (struct option){option_specs[i].name, argument, NULL, LONG_OPTION + i};
+		if (option_specs[i].letter) {
+			*letters++ = (char)option_specs[i].letter;
+			if (argument == required_argument)
+				*letters++ = ':';
+		}
+	}
+	*longs = (struct option){0};
+	*letters = '\0';
+}
+
+static int spec_of_letter(enum command command, int letter)
+{
+	int i = 0;
+	while (option_specs[i].letter != letter || !spec_applies(&option_specs[i], command))
+		i++;
+	return i;
+}
+
+static int take_option(struct options *options, int i, const char *text)
+{
+	struct error error;
+	options->given |= UINT64_C(1) << i;
+	if (!option_parse(options, &option_specs[i], text, &error))
+		return -1;
+	char shown[TEXT_QUOTE_SIZE];
+	text_quote(text, shown, sizeof shown);
+	return options_usage(options->command, "bad value '%s' for --%s: %s", shown, option_specs[i].name, error.text);
+}
+
+static int bad_option(enum command command, int code, char **argv)
+{
+	char shown[TEXT_QUOTE_SIZE];
+	if (optopt > 0 && optopt < LONG_OPTION && argv[optind - 1][1] != '-')
+		snprintf(shown, sizeof shown, "-%c", optopt);
+	else
+		text_quote(argv[optind - 1], shown, sizeof shown);
+	return options_usage(command, "%s '%s'",
+			     code == ':'             ? "expected an argument behind"
+			     : optopt >= LONG_OPTION ? "expected no argument in"
+						     : "unknown or ambiguous option",
+			     shown);
+}
+
+/* Combinations in which some option would be ignored, or nothing could come out. */
+static int check_fit(const struct options *options)
+{
+	const struct fit_options *fit = &options->fit;
+	if (!fit->diffuse && !fit->specular)
+		return options_usage(options->command, "--no-diffuse and --no-specular leave nothing to fit");
+	static const char *const shape[] = {"sigma", "gamma", "ior"};
+	for (size_t i = 0; i < sizeof shape / sizeof *shape; i++)
+		if (!fit->specular && options_given(options, shape[i]))
+			return options_usage(options->command, "--%s means nothing with --no-specular", shape[i]);
+	if (fit->fresnel == FRESNEL_NONE && options_given(options, "ior"))
+		return options_usage(options->command, "--ior means nothing with --fresnel none");
+	if (options->resume && !options->output)
+		return options_usage(options->command, "--resume needs -o FILE");
+	if (options->resume && options->json)
+		return options_usage(options->command, "--resume needs a CSV, not --json");
+	if (options->readable && options->json && !options->output)
+		return options_usage(options->command, "--table and --json exclude each other without -o");
+	return -1;
+}
+
+int options_parse(struct options *options, enum command command, int argc, char **argv, atomic_bool *cancel)
+{
+	struct option longs[OPTIONS_MAX + 2];
+	char letters[2 * OPTIONS_MAX + 3];
+	fill_getopt(command, longs, letters);
+	*options = options_default(command);
+	opterr = 0;
+	optind = 0;
+	for (int code; (code = getopt_long(argc, argv, letters, longs, NULL)) != -1;) {
+		if (code == 'h') {
+			const struct options defaults = options_default(command);
+			print_help(&defaults);
+			return EXIT_DONE;
+		}
+		if (code == '?' || code == ':')
+			return bad_option(command, code, argv);
+		const int i = code >= LONG_OPTION ? code - LONG_OPTION : spec_of_letter(command, code);
+		const int end = take_option(options, i, optarg ? optarg : "");
+		if (end >= 0)
+			return end;
+	}
+	options->path = argv + optind;
+	options->n_paths = argc - optind;
+	options->cancel = cancel;
+	options->fit.cancel = cancel;
+	if (!options->n_paths)
+		return options_usage(command, "expected %s, found nothing", commands[command].arguments);
+	return command == COMMAND_FIT || command == COMMAND_COMPARE ? check_fit(options) : -1;
+}
+
+bool options_given(const struct options *options, const char *name)
+{
+	for (int i = 0; option_specs[i].name; i++)
+		if (options->given & UINT64_C(1) << i && !strcmp(option_specs[i].name, name))
+			return true;
+	return false;
+}
+
+const char *options_given_beside(const struct options *options, const char *const *expected)
+{
+	for (int i = 0; option_specs[i].name; i++) {
+		const char *const *at = expected;
+		while (*at && strcmp(*at, option_specs[i].name))
+			at++;
+		if (!*at && options->given & UINT64_C(1) << i)
+			return option_specs[i].name;
+	}
+	return NULL;
+}
+
+/* An option that says something about a term that the model has not. */
+static int check_model(const struct options *options)
+{
+	static const char *const specular[] = {"sigma", "gamma", "ior", "k", "ndf", "gaf", "fresnel"};
+	const enum command command = options->command;
+	const struct ndf_class *ndf = options->fit.ndf[0];
+	if (options->fit.n_ndf != 1)
+		return options_usage(command, "--ndf takes one name here");
+	if (!options_given(options, "kd") && !options_given(options, "ks"))
+		return options_usage(command, "expected --kd or --ks, or both");
+	for (size_t i = 0; i < sizeof specular / sizeof *specular; i++)
+		if (!options_given(options, "ks") && options_given(options, specular[i]))
+			return options_usage(command, "--%s means nothing without --ks", specular[i]);
+	if (options_given(options, "ks") && !options_given(options, "sigma"))
+		return options_usage(command, "--ks needs --sigma");
+	if (options_given(options, "ks") && ndf_has_gamma(ndf) != options_given(options, "gamma"))
+		return options_usage(command, "--ndf %s %s", ndf_name(ndf),
+				     ndf_has_gamma(ndf) ? "needs --gamma" : "has no --gamma");
+	if (options->fit.fresnel == FRESNEL_NONE && options_given(options, "ior"))
+		return options_usage(command, "--ior means nothing with --fresnel none");
+	if (options->fit.fresnel != FRESNEL_CONDUCTOR && options_given(options, "k"))
+		return options_usage(command, "--k means nothing without --fresnel conductor");
+	return -1;
+}
+
+int options_model(const struct options *options, struct cook_torrance *model)
+{
+	const struct fit_options *fit = &options->fit;
+	const int wrong = check_model(options);
+	if (wrong >= 0)
+		return wrong;
+	*model = (struct cook_torrance){.gaf = fit->gaf, .fresnel = fit->fresnel, .n = fit->ior, .k = options->k};
+	memcpy(model->kd, options->kd, sizeof model->kd);
+	memcpy(model->ks, options->ks, sizeof model->ks);
+	const double sigma = isnan(fit->sigma) ? 1 : fit->sigma, gamma = isnan(fit->gamma) ? 2 : fit->gamma;
+	if (ndf_init(&model->ndf, fit->ndf[0], sigma, sigma, gamma))
+		return options_usage(options->command, "--ndf %s does not allow these parameters",
+				     ndf_name(fit->ndf[0]));
+	return -1;
+}
+
+enum show options_show(const struct options *options)
+{
+	if (options->json && !options->output)
+		return SHOW_JSON;
+	if (options->readable || isatty(STDOUT_FILENO))
+		return SHOW_READABLE;
+	return options->output ? SHOW_NOTHING : SHOW_CSV;
+}

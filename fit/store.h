@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* store - a result table on disk while it grows: each row is appended with one write, the whole is put in order at the
+ * end, and what an earlier run left is used again. A kill at any moment leaves complete rows and perhaps a part of one
+ * more. */
+#ifndef STORE_H
+#define STORE_H
+
+#include "result.h"
+
+struct store {
+	const char *path;     /* borrowed */
+	int fd;               /* -1: closed */
+	bool regular;         /* false: a device or pipe, to which rows are only appended */
+	bool replaces;        /* an older file is there and gets out of the way when the first row comes */
+	bool headed;          /* the header line stands there */
+	struct csv_table old; /* --resume: rows of the earlier run, in order of path and ndf */
+	bool *stale;          /* of each old row: it is left out when the table is written anew */
+};
+
+/* store_open - prepares to write to `path`, which changes only when the first row comes.
+ * resume: reads the rows of an existing table; the rest of an interrupted write behind them is removed.
+ * Errors: STATUS_IO, STATUS_NO_MEMORY, STATUS_FORMAT (resume, and the file is no result table of this version). */
+MUST_CHECK enum status store_open(struct store *store, const char *path, bool resume, struct error *error);
+
+/* store_has - whether the earlier run left a row of this file, bytes, options and version, for the NDF of that name
+ * (NULL: for some NDF) that did not fail. Safe from several threads. */
+bool store_has(const struct store *store, const struct result_source *source, const char *ndf);
+/* store_drop_stale - the old rows of source->path for which store_has() does not hold will not be kept. */
+void store_drop_stale(struct store *store, const struct result_source *source);
+
+/* store_append - writes the rows, each with one write. On failure (STATUS_IO, STATUS_NO_MEMORY) no part of a row is
+ * left. */
+MUST_CHECK enum status store_append(struct store *store, const struct csv_table *rows, struct error *error);
+/* store_rewrite - writes old and new rows anew, in order of material and ndf, beside the table, and puts that in its
+ * place. */
+MUST_CHECK enum status store_rewrite(struct store *store, const struct csv_table *rows, struct error *error);
+/* store_close - releases everything; harmless on a zeroed struct. */
+void store_close(struct store *store);
+
+/* store_backup - renames a regular file out of the way, to `path` with ~ behind it. Nothing there: STATUS_OK. */
+MUST_CHECK enum status store_backup(const char *path, struct error *error);
+
+#endif

@@ -1,0 +1,807 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The program itself: exit codes, both streams, bad input, batches, kill and resume. Runs $STDFIT or build/stdfit. */
+#include "check.h"
+#include "result.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { MERL_SIZE = 34992012 };
+
+/* A fit that takes a moment: few free parameters, few entries. */
+#define CHEAP "--ndf ggx,beckmann --sigma 0.2 --ior 1.5 --max-theta 20"
+/* One that never ends by itself. */
+#define ENDLESS "--ndf ggx --starts 100000"
+
+static char directory[] = "/tmp/stdfit-cli-XXXXXX";
+
+/* What the last run left. */
+static struct {
+	int code; /* 128 + signal when killed by one */
+	char *out, *err;
+} last;
+
+static char *slurp(const char *path)
+{
+	char *text = NULL;
+	size_t size = 0;
+	FILE *file = fopen(path, "rb"), *memory = open_memstream(&text, &size);
+	assert_non_null(memory);
+	if (!file)
+		fail_msg("%s: %s", path, strerror(errno));
+	for (int c; (c = fgetc(file)) != EOF;)
+		fputc(c, memory);
+	fclose(file);
+	assert_int_equal(fclose(memory), 0);
+	return text;
+}
+
+/* Starts a shell command in the temporary directory; `exec` in it makes the process the program itself. */
+static pid_t start(const char *command)
+{
+	const pid_t pid = fork();
+	assert_true(pid >= 0);
+	if (pid == 0) {
+		execl("/bin/sh", "sh", "-c", command, (char *)NULL);
+		_exit(127);
+	}
+	return pid;
+}
+
+static int end(pid_t pid)
+{
+	int status;
+	while (waitpid(pid, &status, 0) < 0)
+		assert_int_equal(errno, EINTR);
+	return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+/* Runs a shell command and keeps its code and streams in `last`. */
+static void shell(const char *command)
+{
+	char *whole;
+	assert_true(asprintf(&whole, "{ %s\n} >stdout 2>stderr", command) > 0);
+	free(last.out);
+	free(last.err);
+	last.code = end(start(whole));
+	last.out = slurp("stdout");
+	last.err = slurp("stderr");
+	free(whole);
+}
+
+/* Runs the program with these arguments. */
+static void stdfit(const char *arguments)
+{
+	char *command;
+	assert_true(asprintf(&command, "exec \"$STDFIT\" %s", arguments) > 0);
+	shell(command);
+	free(command);
+}
+
+static size_t count_lines(const char *text)
+{
+	size_t n = 0;
+	for (; *text; text++)
+		n += *text == '\n';
+	return n;
+}
+
+#define expect_code(wanted) expect_code_at(wanted, __LINE__)
+static void expect_code_at(int wanted, int line)
+{
+	if (last.code != wanted)
+		fail_msg("line %d: exit code %d, expected %d; standard error: %s", line, last.code, wanted, last.err);
+}
+
+/* The run ended with this code, one line on standard error that begins "stdfit: " and has `part`. */
+#define expect_error(code, part) expect_error_at(code, part, __LINE__)
+static void expect_error_at(int code, const char *part, int line)
+{
+	expect_code_at(code, line);
+	if (count_lines(last.err) != 1 || strncmp(last.err, "stdfit: ", 8) != 0 || !strstr(last.err, part))
+		fail_msg("line %d: expected one line with '%s' on standard error, found: %s", line, part, last.err);
+}
+
+#define expect_out(part) expect_part(last.out, part, __LINE__)
+static void expect_part(const char *text, const char *part, int line)
+{
+	if (!strstr(text, part))
+		fail_msg("line %d: expected '%s' in: %.2000s", line, part, text);
+}
+
+static struct csv_table read_table(const char *path)
+{
+	struct csv_table table = csv_table_make(result_columns, RESULT_COLUMNS);
+	struct error error;
+	if (csv_table_read(&table, path, RESULT_COLUMNS, NULL, &error))
+		fail_msg("%s", error.text);
+	return table;
+}
+
+/* The table as text, without what differs between runs. */
+static char *without_seconds(const char *path)
+{
+	struct csv_table table = read_table(path);
+	char *text = NULL, empty[] = "";
+	size_t size;
+	FILE *file = open_memstream(&text, &size);
+	assert_non_null(file);
+	for (size_t i = 0; i < table.n_rows; i++) {
+		table.row[i][RESULT_SECONDS] = empty;
+		csv_write_row(file, table.row[i], RESULT_COLUMNS);
+	}
+	assert_int_equal(fclose(file), 0);
+	csv_table_free(&table);
+	return text;
+}
+
+/* A file of this header and size, whose other bytes are zero (and take no room). */
+static void make_file(const char *path, const int32_t n[3], off_t size)
+{
+	FILE *file = fopen(path, "wb");
+	assert_non_null(file);
+	assert_int_equal(fwrite(n, sizeof *n, 3, file), 3);
+	assert_int_equal(fflush(file), 0);
+	assert_int_equal(ftruncate(fileno(file), size), 0);
+	assert_int_equal(fclose(file), 0);
+}
+
+static void put_double(const char *path, long entry, double x)
+{
+	const int fd = open(path, O_WRONLY);
+	assert_true(fd >= 0);
+	assert_int_equal(pwrite(fd, &x, sizeof x, 12 + 8 * entry), sizeof x);
+	assert_int_equal(close(fd), 0);
+}
+
+static void fill_minus_one(const char *path)
+{
+	static double ones[90 * 180];
+	FILE *file = fopen(path, "r+b");
+	assert_non_null(file);
+	assert_int_equal(fseek(file, 12, SEEK_SET), 0);
+	for (int i = 0; i < 90 * 180; i++)
+		ones[i] = -1;
+	for (int i = 0; i < 3 * 90; i++)
+		assert_int_equal(fwrite(ones, sizeof ones, 1, file), 1);
+	assert_int_equal(fclose(file), 0);
+}
+
+static const int32_t sound[3] = {90, 90, 180};
+
+static int set_up(void **state)
+{
+	(void)state;
+	const char *given = getenv("STDFIT");
+	char *program = realpath(given ? given : "build/stdfit", NULL);
+	if (!program || setenv("STDFIT", program, 1) || !mkdtemp(directory) || chdir(directory))
+		return -1;
+	free(program);
+	alarm(300); /* a hang ends */
+	shell("exec \"$STDFIT\" synth a.binary --ndf ggx --sigma 0.2 --ior 1.5 --kd 0.3,0.2,0.1 --ks 0.5\n");
+	if (last.code)
+		return -1;
+	shell("mkdir good bad mixed; for f in good/x good/y good/z mixed/a; do ln a.binary $f.binary; done;"
+	      "echo text >mixed/README; head -c 1000 a.binary >mixed/short.binary; ln a.binary mixed/z.binary");
+	return last.code;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	free(last.out);
+	free(last.err);
+	last.out = last.err = NULL;
+	const pid_t pid = fork();
+	if (pid == 0) {
+		execlp("rm", "rm", "-rf", directory, (char *)NULL);
+		_exit(127);
+	}
+	return end(pid);
+}
+
+static void help_and_version(void **state)
+{
+	(void)state;
+	static const char *const commands[] = {"fit", "compare", "eval", "info", "synth"};
+	stdfit("--help");
+	expect_code(0);
+	assert_string_equal(last.err, "");
+	char *overview = strdup(last.out);
+	for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
+		char arguments[32], usage[32];
+		snprintf(arguments, sizeof arguments, "%s --help", commands[i]);
+		snprintf(usage, sizeof usage, i ? "usage: stdfit %s" : "usage: stdfit [%s]", commands[i]);
+		expect_part(overview, commands[i], __LINE__);
+		stdfit(arguments);
+		expect_code(0);
+		assert_string_equal(last.err, "");
+		assert_ptr_equal(strstr(last.out, usage), last.out);
+	}
+	free(overview);
+	stdfit("fit --help");
+	expect_out("(default: std,ggx,beckmann)");
+	expect_out("(default: uncorrelated)");
+	expect_out("(default: 90)");
+	stdfit("--version");
+	expect_code(0);
+	expect_out("stdfit " STDFIT_VERSION);
+	expect_out("nlopt");
+	expect_out("GSL");
+	expect_out("xxhash");
+}
+
+static void wrong_usage(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *arguments, *message;
+	} wrong[] = {
+		{"", "expected PATH"},
+		{"fit", "expected PATH"},
+		{"compare", "expected PATH"},
+		{"info", "expected FILE"},
+		{"--nonsense a.binary", "'--nonsense'"},
+		{"a.binary -z", "'-z'"},
+		{"a.binary -o", "'-o'"},
+		{"a.binary --ndf", "'--ndf'"},
+		{"a.binary --quiet=yes", "'--quiet=yes'"},
+		{"a.binary --ndf phong", "bad value 'phong' for --ndf: expected one of std, ggx, beckmann"},
+		{"a.binary --ndf ggx,", "bad value 'ggx,' for --ndf"},
+		{"a.binary --ndf ggx,ggx", "twice"},
+		{"a.binary --gaf none",
+		 "bad value 'none' for --gaf: expected one of uncorrelated, correlated, v-groove"},
+		{"a.binary --fresnel x", "for --fresnel"},
+		{"a.binary --weight ''", "bad value '' for --weight"},
+		{"a.binary --bins corner", "for --bins: expected one of node, centre"},
+		{"a.binary --max-theta 90.5", "for --max-theta: expected a number from 1 to 90"},
+		{"a.binary --max-theta 9O", "bad value '9O' for --max-theta"},
+		{"a.binary --max-theta nan", "for --max-theta"},
+		{"a.binary --max-theta ''", "for --max-theta"},
+		{"a.binary --threads 0", "for --threads: expected a whole number from 1"},
+		{"a.binary --threads 2.5", "for --threads"},
+		{"a.binary --threads 99999999999999999999", "for --threads"},
+		{"a.binary --seed -1", "for --seed"},
+		{"a.binary --seed 18446744073709551616", "for --seed"},
+		{"a.binary --ior 1", "for --ior"},
+		{"a.binary --ior 1e400", "for --ior"},
+		{"a.binary --gamma 1.5", "for --gamma"},
+		{"a.binary --sigma -0.1", "for --sigma"},
+		{"a.binary --within 5%%", "for --within"},
+		{"a.binary --no-diffuse --no-specular", "leave nothing to fit"},
+		{"a.binary --no-specular --sigma 0.1", "--sigma means nothing"},
+		{"a.binary --fresnel none --ior 1.5", "--ior means nothing"},
+		{"a.binary --resume", "--resume needs -o"},
+		{"a.binary --resume --json -o x.json", "--resume needs a CSV"},
+		{"compare a.binary --resume", "'--resume'"},
+		{"info a.binary --ndf ggx", "'--ndf'"},
+		{"eval a.binary --weight none --kd 1", "'--weight'"},
+		{"eval a.binary", "expected --kd or --ks"},
+		{"eval a.binary good/x.binary --kd 1", "expected one FILE, found 2"},
+		{"eval a.binary --ks 1", "--ks needs --sigma"},
+		{"eval a.binary --ks 1 --sigma 0.1", "--ndf std needs --gamma"},
+		{"eval a.binary --ks 1 --sigma 0.1 --ndf ggx --gamma 3", "--ndf ggx has no --gamma"},
+		{"eval a.binary --kd 1,2", "bad value '1,2' for --kd"},
+		{"eval a.binary --kd 1,2,3,4", "for --kd"},
+		{"eval a.binary --kd 1,,3", "for --kd"},
+		{"eval a.binary --kd 1 --sigma 0.1", "--sigma means nothing without --ks"},
+		{"eval a.binary --ks 1 --sigma 0.1 --ndf ggx --k 2", "--k means nothing"},
+		{"eval a.binary --row 1 --kd 1", "--row means nothing"},
+		{"eval a.binary --from x.csv --sigma 0.1", "--sigma and --from exclude each other"},
+		{"synth x.binary --kd 1 --phi 90", "expected 180 or 360"},
+		{"synth x.binary --kd 1 --seed 3", "--seed means nothing"},
+		{"synth x.binary --kd 1 --noise -1", "for --noise"},
+	};
+	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+		stdfit(wrong[i].arguments);
+		expect_error(2, wrong[i].message);
+		assert_string_equal(last.out, "");
+	}
+	assert_int_equal(access("x.binary", F_OK), -1);
+}
+
+/* One file through fit: exit code 1, one line that names it, and failed rows without numbers. */
+static void expect_bad_file(const char *path, const char *message)
+{
+	char arguments[256];
+	snprintf(arguments, sizeof arguments, "'%s' " CHEAP, path);
+	stdfit(arguments);
+	expect_error(1, message);
+	expect_part(last.err, path, __LINE__);
+	struct csv_table table = read_table("stdout");
+	assert_int_equal(table.n_rows, 2);
+	for (size_t i = 0; i < table.n_rows; i++) {
+		assert_true(result_failed(table.row[i]));
+		assert_string_equal(table.row[i][RESULT_ERROR], "");
+		assert_string_equal(table.row[i][RESULT_SIGMA], "");
+		assert_string_equal(table.row[i][RESULT_PATH], path);
+	}
+	csv_table_free(&table);
+}
+
+static void bad_files(void **state)
+{
+	(void)state;
+	expect_bad_file("bad/missing.binary", "No such file or directory");
+	expect_bad_file("a.binary/under.binary", "Not a directory");
+	make_file("bad/empty.binary", sound, 0);
+	expect_bad_file("bad/empty.binary", "cannot read");
+	make_file("bad/seven-bytes.binary", sound, 7);
+	expect_bad_file("bad/seven-bytes.binary", "cannot read");
+	make_file("bad/header.binary", sound, 12);
+	expect_bad_file("bad/header.binary", "cannot read");
+	make_file("bad/truncated.binary", sound, MERL_SIZE - 8);
+	expect_bad_file("bad/truncated.binary", "34992012");
+	make_file("bad/longer.binary", sound, MERL_SIZE + 1);
+	expect_bad_file("bad/longer.binary", "34992012");
+	make_file("bad/wrong.binary", (const int32_t[]){90, 180, 90}, MERL_SIZE);
+	expect_bad_file("bad/wrong.binary", "cannot read");
+	make_file("bad/negative.binary", (const int32_t[]){-90, -90, 180}, MERL_SIZE);
+	expect_bad_file("bad/negative.binary", "cannot read");
+	make_file("bad/huge.binary", (const int32_t[]){INT32_MAX, INT32_MAX, INT32_MAX}, MERL_SIZE);
+	expect_bad_file("bad/huge.binary", "cannot read");
+	make_file("bad/zero.binary", sound, MERL_SIZE);
+	expect_bad_file("bad/zero.binary", "cannot fit");
+	make_file("bad/invalid.binary", sound, MERL_SIZE);
+	fill_minus_one("bad/invalid.binary");
+	expect_bad_file("bad/invalid.binary", "cannot fit");
+	shell("echo 'material,ndf,error' >bad/table.csv");
+	expect_bad_file("bad/table.csv", "cannot read");
+	if (geteuid() != 0) {
+		make_file("bad/unreadable.binary", sound, MERL_SIZE);
+		assert_int_equal(chmod("bad/unreadable.binary", 0), 0);
+		expect_bad_file("bad/unreadable.binary", "Permission denied");
+	}
+	stdfit("info good");
+	expect_error(1, "cannot read 'good'");
+	stdfit("eval good --kd 1");
+	expect_error(1, "cannot read 'good'");
+	shell("mkdir empty; exec \"$STDFIT\" empty");
+	expect_error(1, "cannot read 'empty'");
+	stdfit("\"$(printf 'two\\nlines')\" --ndf ggx");
+	expect_error(1, "two\\x0alines");
+}
+
+static void nan_and_inf_are_masked_and_counted(void **state)
+{
+	(void)state;
+	shell("cp a.binary nan.binary");
+	put_double("nan.binary", 5, NAN);
+	put_double("nan.binary", 90 * 90 * 180 + 6, INFINITY);
+	put_double("nan.binary", 2 * 90 * 90 * 180 + 7, -INFINITY);
+	stdfit("info nan.binary --json");
+	expect_code(0);
+	expect_out("\"non_finite\": 3");
+	expect_out("\"above_horizon\": 1111430");
+	expect_out("\"valid_above_horizon\": 1111427");
+	expect_out("non-finite: 3");
+	stdfit("nan.binary " CHEAP);
+	expect_code(0);
+	struct csv_table table = read_table("stdout");
+	assert_int_equal(table.n_rows, 2);
+	check_between(result_number(table.row[0], RESULT_ERROR), 0, 0.01, "error beside three masked entries");
+	csv_table_free(&table);
+	stdfit("info a.binary --bins centre --json");
+	expect_code(0);
+	expect_out("\"above_horizon\": 1096216");
+}
+
+static void a_fit_tells_what_it_did(void **state)
+{
+	(void)state;
+	stdfit("--max-theta 20 a.binary --sigma 0.2 --ior 1.5 --ndf ggx,beckmann -o one.csv");
+	expect_code(0);
+	assert_string_equal(last.out, "");
+	assert_string_equal(last.err, "");
+	struct csv_table table = read_table("one.csv");
+	assert_int_equal(table.n_rows, 2);
+	char *const *row = table.row[1];
+	assert_string_equal(table.row[0][RESULT_NDF], "beckmann");
+	assert_string_equal(table.row[0][RESULT_GAMMA], "inf");
+	assert_string_equal(row[RESULT_MATERIAL], "a");
+	assert_string_equal(row[RESULT_NDF], "ggx");
+	assert_string_equal(row[RESULT_GAMMA], "2");
+	assert_string_equal(row[RESULT_SIGMA], "0.2");
+	assert_string_equal(row[RESULT_IOR], "1.5");
+	assert_string_equal(row[RESULT_LAMBDA], "exact");
+	assert_string_equal(row[RESULT_STATUS], "converged");
+	assert_string_equal(row[RESULT_MAX_THETA], "20");
+	assert_string_equal(row[RESULT_PATH], "a.binary");
+	assert_string_equal(row[RESULT_VERSION], STDFIT_VERSION);
+	assert_string_equal(
+		row[RESULT_OPTIONS],
+		"gaf=uncorrelated fresnel=dielectric weight=none bins=node max-theta=20 unbounded=no no-diffuse=no "
+		"no-specular=no gray=no ior=1.5 gamma=free sigma=0.2 starts=0 seed=0");
+	assert_int_equal(strlen(row[RESULT_INPUT]), strlen("34992012:") + 16);
+	check_rel(result_number(row, RESULT_KD_R), 0.3, 1e-3, "kd_r");
+	check_rel(result_number(row, RESULT_KD_B), 0.1, 1e-3, "kd_b");
+	check_rel(result_number(row, RESULT_KS_G), 0.5, 1e-3, "ks_g");
+	assert_string_equal(row[RESULT_ERROR], row[RESULT_ERROR_NONE]);
+	char *error = strdup(row[RESULT_ERROR]), *metric = strdup(row[RESULT_LOG_ERROR]);
+	csv_table_free(&table);
+
+	/* The row's parameters give the row's errors, to the last digit. */
+	stdfit("eval a.binary --from one.csv --ndf ggx");
+	expect_code(0);
+	assert_int_equal(count_lines(last.out), 2);
+	expect_out(error);
+	expect_out(metric);
+	stdfit("eval a.binary --from one.csv");
+	assert_int_equal(count_lines(last.out), 3);
+	stdfit("eval a.binary --from one.csv --row 3");
+	expect_error(1, "'one.csv' has no such row");
+	stdfit("eval good/x.binary --from one.csv");
+	expect_error(1, "'one.csv' has no such row");
+	free(error);
+	free(metric);
+	stdfit("eval a.binary --ndf ggx --sigma 0.2 --kd 0.3,0.2,0.1 --ks 0.5 --json");
+	expect_code(0);
+	expect_out("\"error_none\": ");
+}
+
+static void json_and_tables(void **state)
+{
+	(void)state;
+	stdfit("a.binary " CHEAP " --json");
+	expect_code(0);
+	assert_int_equal(last.out[0], '[');
+	expect_out("\"gamma\": \"inf\"");
+	expect_out("\"params\": null");
+	stdfit("a.binary " CHEAP " --table -o table.csv");
+	expect_code(0);
+	assert_ptr_equal(strstr(last.out, "material "), last.out);
+	assert_int_equal(count_lines(last.out), 3);
+	struct csv_table table = read_table("table.csv");
+	assert_int_equal(table.n_rows, 2);
+	csv_table_free(&table);
+}
+
+static void a_batch_survives_a_bad_file(void **state)
+{
+	(void)state;
+	stdfit("mixed " CHEAP " -o mixed.csv");
+	expect_error(1, "mixed/short.binary");
+	struct csv_table table = read_table("mixed.csv");
+	assert_int_equal(table.n_rows, 6);
+	static const char *const materials[] = {"a", "a", "short", "short", "z", "z"};
+	for (size_t i = 0; i < table.n_rows; i++) {
+		assert_string_equal(table.row[i][RESULT_MATERIAL], materials[i]);
+		assert_string_equal(table.row[i][RESULT_NDF], i % 2 ? "ggx" : "beckmann");
+		assert_true(result_failed(table.row[i]) == (i / 2 == 1));
+	}
+	csv_table_free(&table);
+	/* Once given, once found in the directory, once more given: one fit. */
+	stdfit("mixed/a.binary mixed mixed/a.binary " CHEAP);
+	expect_code(1);
+	table = read_table("stdout");
+	assert_int_equal(table.n_rows, 6);
+	csv_table_free(&table);
+}
+
+static void directories_below(void **state)
+{
+	(void)state;
+	shell("mkdir -p tree/b/c tree/.hidden; ln a.binary tree/b/c/deep.binary; ln a.binary tree/.hidden/x.binary;"
+	      "ln -s .. tree/b/up; ln a.binary tree/.x.binary; ln a.binary tree/top.binary");
+	stdfit("tree " CHEAP);
+	expect_code(0);
+	struct csv_table table = read_table("stdout");
+	assert_int_equal(table.n_rows, 2);
+	assert_string_equal(table.row[0][RESULT_PATH], "tree/top.binary");
+	csv_table_free(&table);
+	stdfit("-r tree/ " CHEAP);
+	expect_code(0);
+	table = read_table("stdout");
+	assert_int_equal(table.n_rows, 4);
+	assert_string_equal(table.row[0][RESULT_PATH], "tree/b/c/deep.binary");
+	csv_table_free(&table);
+}
+
+static void threads_change_nothing(void **state)
+{
+	(void)state;
+	char *first = NULL;
+	for (int threads = 1; threads <= 3; threads++) {
+		char arguments[160];
+		snprintf(arguments, sizeof arguments, "mixed a.binary " CHEAP " --threads %d", threads);
+		stdfit(arguments);
+		expect_error(1, "short.binary");
+		char *text = without_seconds("stdout");
+		if (first)
+			assert_string_equal(text, first);
+		else
+			first = strdup(text);
+		free(text);
+		snprintf(arguments, sizeof arguments, "a.binary " CHEAP " --threads %d", threads);
+		stdfit(arguments);
+		text = without_seconds("stdout");
+		if (!strstr(first, text))
+			fail_msg("%d threads, alone: %s\nin a batch: %s", threads, text, first);
+		free(text);
+	}
+	free(first);
+}
+
+/* Waits until the file has this many lines, or the process is gone. */
+static void wait_for_lines(const char *path, size_t lines)
+{
+	for (bool there = false; !there;) {
+		nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
+		if (access(path, F_OK) == 0) {
+			char *text = slurp(path);
+			there = count_lines(text) >= lines;
+			free(text);
+		}
+	}
+}
+
+static void kill_and_resume(void **state)
+{
+	(void)state;
+	stdfit("good " CHEAP " -o whole.csv");
+	expect_code(0);
+	char *whole = without_seconds("whole.csv");
+	const pid_t pid = start("exec \"$STDFIT\" good " CHEAP " --threads 1 -o cut.csv 2>/dev/null");
+	wait_for_lines("cut.csv", 2);
+	kill(pid, SIGKILL);
+	end(pid);
+	char *before = slurp("cut.csv");
+	assert_true(count_lines(before) >= 2);
+	/* Each line that is whole is a row; whatever stands behind the last of them goes. */
+	FILE *file = fopen("cut.csv", "ab");
+	assert_non_null(file);
+	fputs("y,ggx,0.1,\"torn\nin the mid", file);
+	assert_int_equal(fclose(file), 0);
+	stdfit("good " CHEAP " --resume -o cut.csv");
+	expect_code(0);
+	assert_string_equal(last.err, "");
+	char *after = slurp("cut.csv"), *resumed = without_seconds("cut.csv");
+	assert_string_equal(resumed, whole);
+	/* What was there, `seconds` included, is there still: it was not made again. */
+	char *line = strtok(before, "\n");
+	for (size_t i = 0; line && i < 2; i++, line = strtok(NULL, "\n"))
+		expect_part(after, line, __LINE__);
+	free(before);
+	free(after);
+	free(resumed);
+	free(whole);
+}
+
+static void resume_redoes_what_differs(void **state)
+{
+	(void)state;
+	shell("mkdir again; ln a.binary again/p.binary; ln a.binary again/q.binary; ln mixed/short.binary "
+	      "again/s.binary");
+	stdfit("again " CHEAP " -o again.csv");
+	expect_code(1);
+	/* The bad file is a good one now, another holds other bytes, a third is gone from the command line. */
+	shell("ln -f a.binary again/s.binary; cp a.binary again/q2; mv again/q2 again/q.binary");
+	put_double("again/q.binary", 5, -1);
+	struct csv_table old = read_table("again.csv");
+	stdfit("again/s.binary again/q.binary " CHEAP " --resume -o again.csv");
+	expect_code(0);
+	struct csv_table new = read_table("again.csv");
+	assert_int_equal(new.n_rows, 6);
+	for (size_t i = 0; i < 6; i++) {
+		assert_false(result_failed(new.row[i]));
+		assert_string_equal(new.row[i][RESULT_PATH], old.row[i][RESULT_PATH]);
+	}
+	assert_string_equal(new.row[0][RESULT_SECONDS], old.row[0][RESULT_SECONDS]);
+	assert_string_not_equal(new.row[2][RESULT_INPUT], old.row[2][RESULT_INPUT]);
+	csv_table_free(&old);
+	csv_table_free(&new);
+	/* Other options: made again. */
+	stdfit("again " CHEAP " --gray --resume -o again.csv");
+	expect_code(0);
+	new = read_table("again.csv");
+	assert_int_equal(new.n_rows, 6);
+	for (size_t i = 0; i < 6; i++)
+		expect_part(new.row[i][RESULT_OPTIONS], "gray=yes", __LINE__);
+	csv_table_free(&new);
+	/* Another file than a result table stays as it is. */
+	shell("echo 'dear diary' >diary.csv");
+	stdfit("again " CHEAP " --resume -o diary.csv");
+	expect_error(1, "cannot resume 'diary.csv'");
+	char *diary = slurp("diary.csv");
+	assert_string_equal(diary, "dear diary\n");
+	free(diary);
+	/* Without --resume it moves out of the way. */
+	stdfit("a.binary " CHEAP " -o diary.csv");
+	expect_code(0);
+	diary = slurp("diary.csv~");
+	assert_string_equal(diary, "dear diary\n");
+	free(diary);
+}
+
+/* Interrupts a batch whose first file fails at once and whose second one takes for ever. */
+static void interrupt(int number)
+{
+	unlink("stopped.csv");
+	const pid_t pid =
+		start("exec \"$STDFIT\" mixed/short.binary a.binary " ENDLESS " --threads 1 -o stopped.csv 2>stderr");
+	wait_for_lines("stopped.csv", 2);
+	kill(pid, number);
+	assert_int_equal(end(pid), 130);
+	struct csv_table table = read_table("stopped.csv");
+	assert_int_equal(table.n_rows, 1);
+	assert_string_equal(table.row[0][RESULT_MATERIAL], "short");
+	csv_table_free(&table);
+	char *err = slurp("stderr");
+	assert_int_equal(count_lines(err), 1);
+	free(err);
+}
+
+static void an_interrupt_keeps_what_is_done(void **state)
+{
+	(void)state;
+	interrupt(SIGINT);
+	interrupt(SIGTERM);
+}
+
+static void outputs_that_cannot_be_written(void **state)
+{
+	(void)state;
+	stdfit("a.binary " CHEAP " -o /nowhere/x.csv");
+	expect_error(1, "cannot write '/nowhere/x.csv'");
+	stdfit("a.binary " CHEAP " -o good");
+	expect_error(1, "cannot write 'good': Is a directory");
+	stdfit("a.binary " CHEAP " -o /dev/full");
+	expect_error(1, "cannot write '/dev/full': No space left on device");
+	stdfit("a.binary " CHEAP " --json -o /dev/full");
+	expect_error(1, "No space left on device");
+	stdfit("a.binary " CHEAP " >/dev/full");
+	expect_error(1, "cannot write standard output: No space left on device");
+	stdfit("--help >/dev/full");
+	expect_error(1, "cannot write standard output");
+	stdfit("info a.binary >&-");
+	expect_error(1, "cannot write standard output");
+	stdfit("a.binary " CHEAP " >&-");
+	expect_error(1, "cannot write standard output");
+	stdfit("a.binary " CHEAP " -o closed.csv >&- 2>stderr <&-");
+	expect_code(0);
+	struct csv_table table = read_table("closed.csv");
+	assert_int_equal(table.n_rows, 2);
+	csv_table_free(&table);
+	stdfit("synth /nowhere/x.binary --kd 1");
+	expect_error(1, "cannot write '/nowhere/x.binary'");
+	stdfit("compare a.binary " CHEAP " -o /nowhere/x.csv");
+	expect_error(1, "cannot write '/nowhere/x.csv'");
+}
+
+static void a_reader_that_is_gone(void **state)
+{
+	(void)state;
+	int ends[2];
+	assert_int_equal(pipe(ends), 0);
+	assert_int_equal(close(ends[0]), 0);
+	const pid_t pid = fork();
+	assert_true(pid >= 0);
+	if (pid == 0) {
+		dup2(ends[1], STDOUT_FILENO);
+		close(ends[1]);
+		execl("/bin/sh", "sh", "-c", "exec \"$STDFIT\" fit a.binary " CHEAP " 2>stderr", (char *)NULL);
+		_exit(127);
+	}
+	close(ends[1]);
+	assert_int_equal(end(pid), 1);
+	char *err = slurp("stderr");
+	assert_string_equal(err, "stdfit: cannot write standard output: Broken pipe\n");
+	free(err);
+}
+
+static void write_text(const char *path, const char *text)
+{
+	FILE *file = fopen(path, "w");
+	assert_non_null(file);
+	fputs(text, file);
+	assert_int_equal(fclose(file), 0);
+}
+
+static void compare_tables(void **state)
+{
+	(void)state;
+	write_text("four.csv", "ndf,material,error,options,extra\n"
+			       "std,a,0.125,o,1\nggx,a,0.25,o,1\nbeckmann,a,0.625,o,1\n"
+			       "std,b,0.375,o,1\nggx,b,0.375,o,1\nbeckmann,b,0.75,o,1\n"
+			       "std,\"c,d\",0.25,o,1\nbeckmann,\"c,d\",0.125,o,1\n"
+			       "ggx,e,,o,1\n");
+	stdfit("compare four.csv");
+	expect_code(0);
+	assert_string_equal(last.out,
+			    "material,error_std,error_ggx,error_beckmann,winner,gain_over_ggx,gain_over_beckmann\n"
+			    "a,0.125,0.25,0.625,std,50,80\n"
+			    "b,0.375,0.375,0.75,tie,0,50\n"
+			    "\"c,d\",0.25,,0.125,beckmann,,-100\n"
+			    "e,,,,,,\n"
+			    "(mean),0.25,0.3125,0.5,,25,10\n"
+			    "(median),0.25,0.3125,0.625,,25,50\n"
+			    "(worst),0.375,0.375,0.75,,0,-100\n"
+			    "(wins),1,0,1,1 tie,,\n");
+	stdfit("compare four.csv --ndf ggx");
+	expect_error(2, "--ndf means nothing");
+	stdfit("compare four.csv --threads 2");
+	expect_error(2, "--threads means nothing");
+	stdfit("compare a.binary four.csv");
+	expect_error(2, "expected one table");
+	write_text("mixed-options.csv", "material,ndf,error,options\na,std,0.1,weight=none\na,ggx,0.2,weight=cosine\n");
+	stdfit("compare mixed-options.csv");
+	expect_error(1, "row 2: made with other options");
+	write_text("broken.csv", "material,ndf,error\na,std\n");
+	stdfit("compare broken.csv");
+	expect_error(1, "'broken.csv' line 2: expected 3 fields, found 2");
+	stdfit("compare a.binary " CHEAP);
+	expect_code(0);
+	expect_out("material,error_ggx,error_beckmann,winner,gain_over_ggx,gain_over_beckmann\na,");
+	expect_out(",ggx,,\n(mean)");
+}
+
+static void within_takes_the_simplest(void **state)
+{
+	(void)state;
+	/* A gray Lambert surface needs one parameter, whatever else the whole model does to the noise. */
+	stdfit("synth gray.binary --kd 0.4 --noise 0.02");
+	expect_code(0);
+	stdfit("gray.binary --ndf ggx --sigma 0.3 --ior 1.5 --max-theta 20 --within 1%");
+	expect_code(0);
+	struct csv_table table = read_table("stdout");
+	assert_int_equal(table.n_rows, 1);
+	assert_string_equal(table.row[0][RESULT_KS_R], "");
+	assert_string_equal(table.row[0][RESULT_SIGMA], "");
+	check_rel(result_number(table.row[0], RESULT_KD_R), 0.4, 1e-3, "kd_r");
+	assert_string_equal(table.row[0][RESULT_KD_R], table.row[0][RESULT_KD_B]);
+	expect_part(table.row[0][RESULT_OPTIONS], "within=1", __LINE__);
+	csv_table_free(&table);
+	stdfit("a.binary " CHEAP " --within 1%");
+	expect_code(0);
+	table = read_table("stdout");
+	assert_int_equal(table.n_rows, 1);
+	assert_string_equal(table.row[0][RESULT_NDF], "ggx");
+	check_rel(result_number(table.row[0], RESULT_KD_B), 0.1, 1e-2, "kd_b");
+	csv_table_free(&table);
+}
+
+static void noise_follows_the_seed(void **state)
+{
+	(void)state;
+	stdfit("synth n1.binary --kd 0.5 --noise 0.1 --seed 5 --threads 1");
+	expect_code(0);
+	stdfit("synth n2.binary --kd 0.5 --noise 0.1 --seed 5 --threads 3");
+	expect_code(0);
+	shell("cmp n1.binary n2.binary");
+	expect_code(0);
+	stdfit("n1.binary --no-specular --ndf ggx");
+	expect_code(0);
+	/* The mean of |g|, g normally distributed with standard deviation 0.1. */
+	struct csv_table table = read_table("stdout");
+	check_abs(result_number(table.row[0], RESULT_ERROR), 0.1 * sqrt(2 / 3.14159265358979), 5e-4, "error");
+	csv_table_free(&table);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(help_and_version),
+		cmocka_unit_test(wrong_usage),
+		cmocka_unit_test(bad_files),
+		cmocka_unit_test(nan_and_inf_are_masked_and_counted),
+		cmocka_unit_test(a_fit_tells_what_it_did),
+		cmocka_unit_test(json_and_tables),
+		cmocka_unit_test(a_batch_survives_a_bad_file),
+		cmocka_unit_test(directories_below),
+		cmocka_unit_test(threads_change_nothing),
+		cmocka_unit_test(kill_and_resume),
+		cmocka_unit_test(resume_redoes_what_differs),
+		cmocka_unit_test(an_interrupt_keeps_what_is_done),
+		cmocka_unit_test(outputs_that_cannot_be_written),
+		cmocka_unit_test(a_reader_that_is_gone),
+		cmocka_unit_test(compare_tables),
+		cmocka_unit_test(within_takes_the_simplest),
+		cmocka_unit_test(noise_follows_the_seed),
+	};
+	return cmocka_run_group_tests(tests, set_up, tear_down);
+}
