@@ -6,7 +6,6 @@
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
-#include <time.h>
 
 static const char *const weight_names[WEIGHT_COUNT] = {
 	[WEIGHT_NONE] = "none", [WEIGHT_COSINE] = "cosine", [WEIGHT_SOLID_ANGLE] = "solid-angle"};
@@ -60,14 +59,6 @@ void fit_context_free(struct fit_context *context)
 	if (context)
 		geometry_free(&context->geometry);
 	free(context);
-}
-
-static double now_s(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 /* One material under one set of options. */
@@ -160,13 +151,13 @@ struct nested {
 static enum status fit_alone(const struct job *job, const struct ndf_class *class, const struct shape given[],
 			     int n_given, struct fit_result *r)
 {
-	const double begin = now_s();
+	const double begin = search_clock();
 	struct found found;
 	enum status status = search_run(&job->levels, job->options, class, given, n_given, &found);
 
 	if (status == STATUS_OK)
 		status = result_of(job, class, &found, r);
-	r->seconds = now_s() - begin;
+	r->seconds = search_clock() - begin;
 	return status;
 }
 

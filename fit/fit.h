@@ -30,6 +30,16 @@ MUST_CHECK enum status weight_find(const char *name, enum weight *weight);
 
 enum { FIT_NDFS_MAX = 16 };
 
+/* struct fit_trace - a step of a search. */
+struct fit_trace {
+	const struct ndf_class *ndf;
+	const char *stage;           /* "scan", "thin-1" .. "thin-3" (ever larger samples of the table), "full" */
+	double sigma, gamma, ior, k; /* the shape; NaN where the model has none */
+	double error;                /* E on the stage's table: on a thinned one an estimate */
+	long evaluations;            /* shapes evaluated so far by this search */
+	double seconds;              /* since the search began */
+};
+
 /* struct fit_options - everything that changes a result; see fit_options_default(). NaN = free. */
 struct fit_options {
 	const struct ndf_class *ndf[FIT_NDFS_MAX]; /* the NDFs to fit, in this order */
@@ -44,13 +54,17 @@ struct fit_options {
 	bool specular;         /* false: ks = 0, no shape is searched */
 	bool gray;             /* one kd and one ks for the three channels */
 	double ior, gamma, sigma; /* fixed value, or NaN */
-	int starts;            /* extra random starts on the full table; 0 by default */
+	int starts;            /* extra random starts, which skip the coarsest table; 0 by default */
 	uint64_t seed;
 	int threads;           /* threads of one fit; changes no result */
+	/* Called whenever a search finds a better shape on the table it is working on, by one thread at a time; NULL: never. */
+	void (*trace)(void *trace_data, const struct fit_trace *point);
+	void *trace_data;
 	/* Set to true from a signal handler or another thread to stop; may be NULL. */
 	const atomic_bool *cancel;
 };
 
+/* struct fit_options' defaults: STD, GGX and Beckmann, the paper's model and error, all processors. */
 struct fit_options fit_options_default(void);
 
 /* struct fit_metrics - how far a model is from the table. */

@@ -214,7 +214,6 @@ double objective_eval(struct objective *o, const struct shape *shape, double tol
 	struct kernel_sums total[SAMPLES_CHANNELS];
 	bool lobe = true, going = true;
 
-	o->evaluations++;
 	if (tabulate(o, shape) != STATUS_OK)
 		return no_fit;
 	fill_rows(o, shape);

@@ -32,7 +32,6 @@ struct objective {
 	float row[TABLE_ROWS];
 	struct shape tabulated;           /* sigma and gamma that masking and D stand for */
 	struct linear start;              /* where the next inner solve begins: the last one's end */
-	long evaluations;
 };
 
 /* objective_init - buffers for one table and one NDF. */

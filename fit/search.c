@@ -4,6 +4,7 @@
 #include <nlopt.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 /* Slots of the thinned tables. Systematic samples this small estimate E to about 0.1, 0.03 and 0.003 %. */
 static const int level_slots[SEARCH_LEVELS - 1] = {3000, 12000, 60000};
@@ -84,7 +85,41 @@ struct search {
 	double lo[SEARCH_DIMS], hi[SEARCH_DIMS];
 	struct shape fixed; /* values of the parameters that are not searched */
 	_Atomic long evaluations;
+	double begin_s;
+	const char *stage;
+	double stage_best; /* least error of this stage */
 };
+
+double search_clock(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void begin_stage(struct search *s, const char *stage)
+{
+	s->stage = stage;
+	s->stage_best = INFINITY;
+}
+
+/* Counts an evaluation and tells the trace, if there is one, of a better shape. */
+static void note(struct search *s, const struct shape *shape, double error)
+{
+	const long evaluations = ++s->evaluations;
+
+	if (!s->options->trace)
+		return;
+#pragma omp critical(search_trace)
+	if (error < s->stage_best) {
+		const struct fit_trace point = {s->class, s->stage, shape->sigma, shape->gamma, shape->ior, shape->k,
+						error, evaluations, search_clock() - s->begin_s};
+
+		s->stage_best = error;
+		s->options->trace(s->options->trace_data, &point);
+	}
+}
 
 static bool cancelled(const struct search *s)
 {
@@ -206,10 +241,10 @@ static enum status scan(struct search *s, struct place *grid)
 				const struct shape shape = shape_at(s, grid[i].x);
 
 				grid[i].error = objective_eval(&o, &shape, 2e-3, false, &linear);
+				note(s, &shape, grid[i].error);
 			}
 		}
 		if (mine == STATUS_OK) {
-			s->evaluations += o.evaluations;
 			objective_free(&o);
 		} else {
 #pragma omp critical
@@ -269,6 +304,7 @@ static int pick_starts(const struct search *s, struct place *grid, struct place 
 
 /* How a level is searched. */
 struct stage {
+	const char *name;
 	int most;         /* places that go on from the level before, at most */
 	double margin;    /* those whose error is within this of the best, relative */
 	nlopt_algorithm algorithm;
@@ -279,10 +315,10 @@ struct stage {
 /* On the small tables, whose error is rugged, the simplex method is the one that gets through. What is left to do on the
  * full one is a millionth of the error, on smooth ground: a quadratic model needs the fewest looks there. */
 static const struct stage stages[SEARCH_LEVELS] = {
-	{0, 0, NLOPT_LN_SBPLX, 0.7, 2e-4, 150},
-	{8, 0.02, NLOPT_LN_SBPLX, 0.3, 3e-5, 150},
-	{4, 3e-3, NLOPT_LN_SBPLX, 0.1, 1e-5, 100},
-	{2, 1e-4, NLOPT_LN_BOBYQA, 0.01, 1e-6, 16},
+	{"thin-1", 0, 0, NLOPT_LN_SBPLX, 0.7, 2e-4, 150},
+	{"thin-2", 8, 0.02, NLOPT_LN_SBPLX, 0.3, 3e-5, 150},
+	{"thin-3", 4, 3e-3, NLOPT_LN_SBPLX, 0.1, 1e-5, 100},
+	{"full", 2, 1e-4, NLOPT_LN_BOBYQA, 0.01, 1e-6, 16},
 };
 
 /* One local search. */
@@ -305,6 +341,8 @@ static double local_eval(unsigned dims, const double *x, double *gradient, void 
 	if (cancelled(l->search))
 		nlopt_force_stop(l->opt);
 	const double error = objective_eval(l->objective, &shape, l->tolerance, false, &linear);
+
+	note(l->search, &shape, error);
 
 	if (isinf(l->best.error))
 		l->first = error;
@@ -392,10 +430,8 @@ static enum status refine_all(struct search *s, int level, struct place *place, 
 			if (mine == STATUS_OK && !cancelled(s))
 				mine = refine(s, &o, &stages[level], &place[n], &limited);
 		}
-		if (ready) {
-			s->evaluations += o.evaluations;
+		if (ready)
 			objective_free(&o);
-		}
 		if (mine != STATUS_OK)
 #pragma omp critical
 			status = mine;
@@ -413,9 +449,9 @@ static enum status finish_alone(struct search *s, struct place *place, int count
 
 	if (status != STATUS_OK)
 		return status;
+	begin_stage(s, stages[SEARCH_LEVELS - 1].name);
 	for (int n = 0; n < count && status == STATUS_OK && s->dims > 0; n++)
 		status = refine(s, &o, &stages[SEARCH_LEVELS - 1], &place[n], &found->limited);
-	s->evaluations += o.evaluations;
 	objective_free(&o);
 	qsort(place, (size_t)count, sizeof *place, by_error);
 	if (status == STATUS_OK)
@@ -424,7 +460,7 @@ static enum status finish_alone(struct search *s, struct place *place, int count
 		return status;
 	found->shape = shape_at(s, place[0].x);
 	objective_eval(&o, &found->shape, 1e-7, true, &found->linear);
-	s->evaluations += o.evaluations;
+	note(s, &found->shape, found->linear.error);
 	objective_free(&o);
 	return STATUS_OK;
 }
@@ -481,6 +517,7 @@ static int first_places(struct search *s, const struct shape given[], int n_give
 	struct place *grid = calloc((size_t)grid_size(s, 0), sizeof *grid);
 	int count = 0;
 
+	begin_stage(s, "scan");
 	*status = grid ? scan(s, grid) : STATUS_NO_MEMORY;
 	if (*status == STATUS_OK) {
 		count = pick_starts(s, grid, place);
@@ -511,6 +548,7 @@ static enum status descend(struct search *s, const struct shape given[], int n_g
 			random_places(s, place + count, n_random);
 			count += n_random;
 		}
+		begin_stage(s, stages[level].name);
 		status = refine_all(s, level, place, count);
 		if (level <= 1)
 			found->starts_agreeing += agreeing(place, from, count);
@@ -524,7 +562,7 @@ static enum status descend(struct search *s, const struct shape given[], int n_g
 enum status search_run(const struct levels *levels, const struct fit_options *options, const struct ndf_class *class,
 		       const struct shape given[], int n_given, struct found *found)
 {
-	struct search s = {.levels = levels, .options = options, .class = class};
+	struct search s = {.levels = levels, .options = options, .class = class, .begin_s = search_clock()};
 	struct place nowhere = {.error = 0};
 	enum status status;
 

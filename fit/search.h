@@ -25,6 +25,9 @@ struct found {
 	long evaluations;
 };
 
+/* search_clock - seconds of a clock that only runs forward. */
+double search_clock(void);
+
 /* search_run - minimises E over the free parameters among sigma, gamma, ior and k.
  * Given:   the shapes of simpler models that should start a local search too (n_given of them)
  * Errors:  STATUS_NO_MEMORY, STATUS_INTERRUPTED */
