@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "ndf.h"
 #include "ndf_class.h"
+#include "student_t.h"
 #include <string.h>
 
 static const struct ndf_class *const classes[] = {
-	&ndf_class_std,
-	&ndf_class_ggx,
-	&ndf_class_beckmann,
+	&ndf_class_std,          &ndf_class_ggx,      &ndf_class_beckmann, &ndf_class_gtr,
+	&ndf_class_hyper_cauchy, &ndf_class_t_family, &ndf_class_low,
 };
 
 enum { CLASSES = sizeof(classes) / sizeof(classes[0]) };
@@ -32,7 +32,36 @@ const char *ndf_name(const struct ndf_class *class)
 
 bool ndf_has_gamma(const struct ndf_class *class)
 {
-	return class->has_gamma;
+	return class->n_params > 1;
+}
+
+bool ndf_has_anisotropy(const struct ndf_class *class)
+{
+	return !class->isotropic;
+}
+
+const struct ndf_param *ndf_param_at(const struct ndf_class *class, int index)
+{
+	return index >= 0 && index < class->n_params ? &class->param[index] : NULL;
+}
+
+static bool param_valid(const struct ndf_param *param, double value)
+{
+	return (param->min_included ? value >= param->min : value > param->min) && value <= param->max;
+}
+
+/* Everything but *out is in place: checks it, prepares it, hands it out. */
+static enum status finish(const struct ndf *filled, struct ndf *out)
+{
+	struct ndf ndf = *filled;
+	for (int i = 0; i < ndf.class->n_params; i++) {
+		if (!param_valid(&ndf.class->param[i], ndf.param[i]))
+			return STATUS_DOMAIN;
+	}
+	if (ndf.class->prepare && !ndf.class->prepare(&ndf))
+		return STATUS_DOMAIN;
+	*out = ndf;
+	return STATUS_OK;
 }
 
 static bool sigma_valid(double sigma)
@@ -40,23 +69,48 @@ static bool sigma_valid(double sigma)
 	return sigma >= NDF_SIGMA_MIN && sigma <= NDF_SIGMA_MAX;
 }
 
-static bool gamma_valid(const struct ndf_class *class, double gamma)
-{
-	return !class->has_gamma || (gamma > class->gamma_min && gamma <= class->gamma_max);
-}
-
 enum status ndf_init(struct ndf *ndf, const struct ndf_class *class, double sigma_x, double sigma_y, double gamma)
 {
-	if (!class || !sigma_valid(sigma_x) || !sigma_valid(sigma_y) || !gamma_valid(class, gamma))
+	if (!class || !sigma_valid(sigma_x) || !sigma_valid(sigma_y) || (class->isotropic && sigma_x != sigma_y))
 		return STATUS_DOMAIN;
-	*ndf = (struct ndf){
+	struct ndf filled = {
 		.class = class,
 		.sigma_x = sigma_x,
 		.sigma_y = sigma_y,
-		.gamma = class->has_gamma ? gamma : class->gamma,
+		.gamma = ndf_has_gamma(class) ? gamma : class->gamma,
+		.param = {sigma_x, gamma},
+		.stretch = 1.0,
 	};
-	if (class->prepare)
-		class->prepare(ndf);
+	if (class->to_params)
+		class->to_params(&filled);
+	return finish(&filled, ndf);
+}
+
+enum status ndf_init_params(struct ndf *ndf, const struct ndf_class *class, const double value[])
+{
+	if (!class)
+		return STATUS_DOMAIN;
+	struct ndf filled = {
+		.class = class,
+		.sigma_x = value[0],
+		.sigma_y = value[0],
+		.stretch = 1.0,
+		.gamma = ndf_has_gamma(class) ? value[1] : class->gamma,
+	};
+	memcpy(filled.param, value, (size_t) class->n_params * sizeof(value[0]));
+	if (class->from_params)
+		class->from_params(&filled);
+	return finish(&filled, ndf);
+}
+
+enum status ndf_set_lambda_form(struct ndf *ndf, enum lambda_form form)
+{
+	if (form != LAMBDA_EXACT && !ndf->class->student_t)
+		return STATUS_UNSUPPORTED;
+	if (!lambda_form_takes(form, ndf->gamma))
+		return STATUS_DOMAIN;
+	ndf->lambda_form = form;
+	ndf->lambda_K = form == LAMBDA_EXACT ? 0.0 : student_t_K(ndf->gamma);
 	return STATUS_OK;
 }
 
@@ -67,10 +121,26 @@ double ndf_D(const struct ndf *ndf, struct vec3 m)
 
 double ndf_lambda(const struct ndf *ndf, struct vec3 w)
 {
-	return w.z <= 0.0 ? INFINITY : ndf->class->lambda(ndf, w);
+	if (w.z <= 0.0)
+		return INFINITY;
+	if (ndf->lambda_form != LAMBDA_EXACT)
+		return lambda_form_lambda(ndf->lambda_form, ndf->gamma, ndf->lambda_K, student_t_z(ndf, w));
+	return ndf->class->lambda(ndf, w);
 }
 
 double ndf_G1(const struct ndf *ndf, struct vec3 w)
 {
 	return 1.0 / (1.0 + ndf_lambda(ndf, w));
+}
+
+struct vec3 ndf_sample(const struct ndf *ndf, double u1, double u2)
+{
+	const double s = ndf->class->tilt(ndf, u2);
+	const double turn = 2.0 * M_PI * u1;
+	return vec3_unit((struct vec3){ndf->sigma_x * s * cos(turn), ndf->sigma_y * s * sin(turn), 1.0});
+}
+
+double ndf_pdf(const struct ndf *ndf, struct vec3 m)
+{
+	return ndf_D(ndf, m) * m.z;
 }

@@ -3,15 +3,27 @@
  *
  * D(m) is the density of microfacet normals per solid angle and macroscopic area: the integral of D(m) m.z over the
  * hemisphere is 1. Smith's Lambda(w) follows from the slopes of those normals along w.
- *     beckmann   Gaussian slopes
- *     ggx        Trowbridge-Reitz
- *     std        Student-t slopes with a shape gamma: ggx at gamma = 2, to the bit, and beckmann at gamma = infinity
- * Accuracy, with the given unit vector taken as exact: relative error of D at most 2e-15, of Lambda 3e-14 where it
- * exceeds 1e-20 and 1e-12 down to 1e-300, of G1 1e-15. The rounding of the vector itself changes a far tail of D by
- * more: with vec3_from_spherical_deg() by up to 2.3e-16 |ln D|, 1e-13 at D = 1e-200. */
+ *     beckmann       Gaussian slopes
+ *     ggx            Trowbridge-Reitz
+ *     std            Student-t slopes with a shape gamma: ggx at gamma = 2, to the bit, beckmann at gamma = infinity
+ *     hyper-cauchy   the same slopes, scaled such that f = 1 in the general family below
+ *     t-family       the same, f = 1/(gamma - x) with a second shape x, 2 unless given
+ *     gtr            generalised Trowbridge-Reitz, D = c (sigma^2 cos^2 + sin^2)^-gamma
+ *     low            the ABC distribution of Low et al., D = A (1 + B (1 - cos))^-C
+ *
+ * The general family D^G(B, C) = (C-1) B (1 + B tan^2)^-C / (pi cos^4), with B = f/sigma^2 and C = gamma, is that of
+ * Student-t slopes: std is f = 1/(gamma-1). When isotropic, its members are one set of distributions under different
+ * names of their roughness.
+ *
+ * Accuracy of std, ggx, beckmann, with the given unit vector taken as exact: relative error of D at most 2e-15, of
+ * Lambda 3e-14 where it exceeds 1e-20 and 1e-12 down to 1e-300, of G1 1e-15. The rounding of the vector itself changes
+ * a far tail of D by more: with vec3_from_spherical_deg() by up to 2.3e-16 |ln D|, 1e-13 at D = 1e-200. The factor f of
+ * hyper-cauchy and t-family adds 2e-16 (1 + gamma) to D and Lambda. gtr and low: D within 2e-15 + 1e-15 gamma (C);
+ * G1, by quadrature, 1e-12. */
 #ifndef NDF_H
 #define NDF_H
 
+#include "lambda_form.h"
 #include "status.h"
 #include "vec3.h"
 #include <stdbool.h>
@@ -22,45 +34,95 @@ struct ndf_class; /* one row of the table of distributions; see ndf_class.h */
 #define NDF_SIGMA_MIN 1e-50
 #define NDF_SIGMA_MAX 1e50
 
-/* struct ndf - one distribution with its parameters; filled by ndf_init(), then only read. */
-struct ndf {
-	const struct ndf_class *class;
-	double sigma_x, sigma_y; /* roughness along x and y, > 0; equal when isotropic */
-	double gamma;            /* STD shape, (1.5, inf]; 2 for ggx, INFINITY for beckmann */
-	double K;                /* Gamma(gamma-1/2) / (sqrt(pi) Gamma(gamma-1)), cached; 0 where unused */
+enum { NDF_PARAMS_MAX = 3 };
+
+/* struct ndf_param - one named parameter of a class. The search coordinate that keeps valleys straight is
+ * ln(value - min) for all of them. */
+struct ndf_param {
+	const char *name;              /* "sigma", "gamma", "x", "B", "C" */
+	double min, max;               /* domain, max included */
+	bool min_included;             /* whether min itself is allowed; no -> an open end */
+	double search_min, search_max; /* where a fit should look; equal when it should leave the value as it is */
 };
 
-/* ndf_find - the class called `name` ("std", "ggx", "beckmann"), or NULL. */
+/* struct ndf - one distribution with its parameters; filled by ndf_init() or ndf_init_params(), then only read. */
+struct ndf {
+	const struct ndf_class *class;
+	double sigma_x, sigma_y;      /* roughness along x and y, > 0; equal when isotropic */
+	double gamma;                 /* shape; 2 for ggx, INFINITY for beckmann, C for low */
+	double param[NDF_PARAMS_MAX]; /* as ndf_param_at() names them; the first is sigma_x where the class has sigma */
+	enum lambda_form lambda_form; /* how Lambda is computed, */
+	double lambda_K;              /* and the K below for it; 0 for LAMBDA_EXACT */
+	/* Cached; 0 where unused. */
+	double K;         /* Gamma(gamma-1/2) / (sqrt(pi) Gamma(gamma-1)) */
+	double a;         /* Student-t slopes: 1/f */
+	double stretch;   /* sqrt((gamma-1)/a), else 1: in terms of std roughness is sigma/stretch */
+	double A;         /* gtr, low: factor of D */
+	double log_width; /* gtr, low: ln of the median slope, */
+	double far;       /* and a slope beyond which D hardly changes up to the horizon */
+};
+
+/* ndf_find - the class called `name` ("std", "ggx", ...), or NULL. */
 const struct ndf_class *ndf_find(const char *name);
 /* ndf_at - the classes in the order of the table, index 0, 1, ...; NULL past the last. */
 const struct ndf_class *ndf_at(int index);
 const char *ndf_name(const struct ndf_class *class);
-/* ndf_has_gamma - whether the shape gamma is a free parameter of the class. */
+/* ndf_has_gamma - whether the class has a shape beside its roughness: the argument gamma of ndf_init() matters. */
 bool ndf_has_gamma(const struct ndf_class *class);
+/* ndf_has_anisotropy - whether sigma_x and sigma_y may differ. */
+bool ndf_has_anisotropy(const struct ndf_class *class);
+/* ndf_param_at - the named parameters of a class, index 0, 1, ...; NULL past the last. */
+const struct ndf_param *ndf_param_at(const struct ndf_class *class, int index);
 
-/* ndf_init - prepares a distribution.
- * Given:   sigma_x, sigma_y in [NDF_SIGMA_MIN, NDF_SIGMA_MAX]; gamma in the class's domain, (1.5, INFINITY] for std,
- *          read only by classes that have one
- * Returns: STATUS_OK, or STATUS_DOMAIN with *ndf untouched: an argument outside its range, NaN, or a NULL class. */
+/* ndf_init - prepares a distribution from a roughness and a shape: coordinates in which all classes can be searched
+ * alike. low takes C = gamma and B = 2/(gamma sigma^2), which makes sigma the width of its peak; t-family takes x = 2.
+ * Given:   sigma_x, sigma_y in [NDF_SIGMA_MIN, NDF_SIGMA_MAX]; gamma in the class's domain, read only by classes that
+ *          have one: (1.5, INFINITY] for std, (1.5, 1e6] for hyper-cauchy, at least 1.5 and x + 1e-6 for t-family, the
+ *          open end excluded, (0, 1000] for gtr and low; for gtr sigma^(2 gamma) below 1e260
+ * Returns: STATUS_OK, or STATUS_DOMAIN with *ndf untouched: an argument outside its range, NaN, sigma_x != sigma_y
+ *          for a class without anisotropy, or a NULL class. */
 MUST_CHECK enum status ndf_init(struct ndf *ndf, const struct ndf_class *class, double sigma_x, double sigma_y,
 				double gamma);
+
+/* ndf_init_params - prepares an isotropic distribution from its own parameters: value[i] for ndf_param_at(class, i).
+ * A struct ndf's param[] given back makes the same distribution, to the bit.
+ * Returns: as ndf_init(). */
+MUST_CHECK enum status ndf_init_params(struct ndf *ndf, const struct ndf_class *class, const double value[]);
+
+/* ndf_set_lambda_form - the form of Lambda that ndf_lambda() and ndf_G1() use from now on; exact after ndf_init().
+ * Returns: STATUS_OK; STATUS_UNSUPPORTED for a class with nothing but its exact form (all but std, hyper-cauchy,
+ *          t-family); STATUS_DOMAIN where gamma is none that the form can do (lambda_form.h). *ndf is untouched then.
+ */
+MUST_CHECK enum status ndf_set_lambda_form(struct ndf *ndf, enum lambda_form form);
 
 /* ndf_D - density of microfacet normals, 1/sr.
  *     beckmann   exp(-q) / (pi sigma_x sigma_y cos^4)                        q = tan^2 (cos^2 phi/sigma_x^2 +
  *     ggx        (1 + q)^-2 / (pi sigma_x sigma_y cos^4)                             sin^2 phi/sigma_y^2)
  *     std        (1 + q/(gamma-1))^-gamma / (pi sigma_x sigma_y cos^4)       [Ribardiere et al. 2017]
+ *     hyper-cauchy, t-family     f (gamma-1) (1 + f q)^-gamma / (pi sigma_x sigma_y cos^4)     [same, supplement]
+ *     gtr, low   as above
  * Given:   m a unit vector
- * Returns: D >= 0; 0 for m.z <= 0; NaN in gives NaN out. The limit at the horizon is 0 for beckmann and gamma > 2,
- *          finite for ggx, infinite for gamma < 2. */
+ * Returns: D >= 0; 0 for m.z <= 0; NaN in gives NaN out. The limit at the horizon is 0 for Student-t slopes of
+ *          gamma > 2, infinite for gamma < 2, finite else. */
 double ndf_D(const struct ndf *ndf, struct vec3 m);
 
 /* ndf_lambda - Smith's Lambda(w), dimensionless: (1/mu) integral over q > mu of (q - mu) P2(q), where mu = cot(theta)
  * and P2 is the density of the slopes along w; anisotropic through sigma^2 = sigma_x^2 cos^2 phi + sigma_y^2 sin^2 phi.
  * Given:   w a unit vector
- * Returns: Lambda >= 0; 0 at normal incidence; INFINITY for w.z <= 0; NaN in gives NaN out. */
+ * Returns: Lambda >= 0; 0 at normal incidence (but for the rational form); INFINITY for w.z <= 0; NaN in gives NaN
+ *          out. */
 double ndf_lambda(const struct ndf *ndf, struct vec3 w);
 
 /* ndf_G1 - Smith's masking 1/(1 + Lambda(w)), in [0, 1]: 1 at normal incidence, 0 for w.z <= 0. */
 double ndf_G1(const struct ndf *ndf, struct vec3 w);
+
+/* ndf_sample - a microfacet normal with the density ndf_pdf(), from two uniform numbers: u1 turns, u2 tilts.
+ * Given:   u1, u2 in [0, 1)
+ * Returns: a unit vector, z >= 0. u2 = 0 gives the normal +z, for gtr with sigma > 1 too. low inverts by Newton's
+ *          method, the others in closed form; relative error of the slope 1e-14 where the cosine exceeds 1e-6. */
+struct vec3 ndf_sample(const struct ndf *ndf, double u1, double u2);
+
+/* ndf_pdf - D(m) m.z, 1/sr: the density of ndf_sample(). */
+double ndf_pdf(const struct ndf *ndf, struct vec3 m);
 
 #endif

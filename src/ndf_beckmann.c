@@ -5,7 +5,11 @@
 
 const struct ndf_class ndf_class_beckmann = {
 	.name = "beckmann",
+	.n_params = 1,
+	.param = {NDF_PARAM_SIGMA},
 	.gamma = INFINITY,
 	.D = beckmann_D,
 	.lambda = beckmann_lambda,
+	.P2 = beckmann_P2,
+	.tilt = beckmann_tilt,
 };

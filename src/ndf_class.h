@@ -8,19 +8,41 @@
 
 struct ndf_class {
 	const char *name;
-	/* Shape parameter: free in (gamma_min, gamma_max] when has_gamma, else always `gamma`. */
-	bool has_gamma;
-	double gamma_min, gamma_max;
-	double gamma;
-	/* Called by ndf_init() after sigma and gamma are set, to fill in what is cached; NULL = nothing. */
-	void (*prepare)(struct ndf *ndf);
+	/* Named parameters; the second, where there is one, has the domain of gamma. */
+	int n_params;
+	struct ndf_param param[NDF_PARAMS_MAX];
+	double gamma;   /* of a class with no shape */
+	bool isotropic; /* sigma_x = sigma_y only */
+	/* Slopes p, q with the density P22 = (gamma-1)/(pi a sigma_x sigma_y) (1 + q/a)^-gamma: see student_t.h. */
+	bool student_t;
+	/* Where param[] is not sigma, gamma: from sigma and gamma to param[], and back. */
+	void (*to_params)(struct ndf *ndf);
+	void (*from_params)(struct ndf *ndf);
+	/* Called last, to fill in what is cached. Returns false where the parameters do not go together. NULL =
+	 * nothing. */
+	bool (*prepare)(struct ndf *ndf);
 	/* Called with m.z > 0 and w.z > 0 (or NaN) only. */
 	double (*D)(const struct ndf *ndf, struct vec3 m);
 	double (*lambda)(const struct ndf *ndf, struct vec3 w);
+	/* Density of the slope q where the roughness is s. */
+	double (*P2)(const struct ndf *ndf, double s, double q);
+	/* tan(theta_m) of the share u of normals, in units of sigma; below it lies the share u. */
+	double (*tilt)(const struct ndf *ndf, double u);
 };
+
+/* Parameters that many classes have. */
+#define NDF_PARAM_SIGMA                                                                                                \
+	{                                                                                                              \
+		.name = "sigma", .min = NDF_SIGMA_MIN, .max = NDF_SIGMA_MAX, .min_included = true, .search_min = 1e-4, \
+		.search_max = 4.0                                                                                      \
+	}
 
 extern const struct ndf_class ndf_class_beckmann;
 extern const struct ndf_class ndf_class_ggx;
+extern const struct ndf_class ndf_class_gtr;
+extern const struct ndf_class ndf_class_hyper_cauchy;
+extern const struct ndf_class ndf_class_low;
 extern const struct ndf_class ndf_class_std;
+extern const struct ndf_class ndf_class_t_family;
 
 #endif

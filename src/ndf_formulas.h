@@ -77,6 +77,21 @@ static inline double ggx_D(const struct ndf *ndf, struct vec3 m)
 	return M_1_PI / (s * ndf->sigma_x) / (s * ndf->sigma_y);
 }
 
+/* GGX: the share 1/(1 + s^2) of the normals is steeper than s. */
+static inline double ggx_tilt(const struct ndf *ndf, double u)
+{
+	(void)ndf;
+	return sqrt(u / (1.0 - u));
+}
+
+/* GGX: P2 = (1 + (q/s)^2)^(-3/2) / (2 s) */
+static inline double ggx_P2(const struct ndf *ndf, double s, double q)
+{
+	(void)ndf;
+	const double root = hypot(1.0, q / s);
+	return 0.5 / s / root / (root * root);
+}
+
 /* GGX: Lambda = (sqrt(1 + 1/z^2) - 1)/2 with numerator and denominator of 1/z kept apart and the subtraction
  * rationalised away. */
 static inline double ggx_lambda(const struct ndf *ndf, struct vec3 w)
@@ -93,6 +108,20 @@ static inline double beckmann_D(const struct ndf *ndf, struct vec3 m)
 	const double z = ndf_cos(m);
 	const double half = exp(-0.5 * q.hi) * (1.0 - 0.5 * q.lo) / (z * z);
 	return M_1_PI * (half / ndf->sigma_x) * (half / ndf->sigma_y);
+}
+
+/* Beckmann: the share exp(-s^2) of the normals is steeper than s. */
+static inline double beckmann_tilt(const struct ndf *ndf, double u)
+{
+	(void)ndf;
+	return sqrt(-log1p(-u));
+}
+
+/* Beckmann: P2 = exp(-(q/s)^2) / (s sqrt(pi)) */
+static inline double beckmann_P2(const struct ndf *ndf, double s, double q)
+{
+	(void)ndf;
+	return exp(-(q / s) * (q / s)) / (s * sqrt(M_PI));
 }
 
 /* Steps of the continued fractions below that give all digits, z >= 0.8. */

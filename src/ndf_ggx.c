@@ -6,7 +6,11 @@
 
 const struct ndf_class ndf_class_ggx = {
 	.name = "ggx",
+	.n_params = 1,
+	.param = {NDF_PARAM_SIGMA},
 	.gamma = 2.0,
 	.D = ggx_D,
 	.lambda = ggx_lambda,
+	.P2 = ggx_P2,
+	.tilt = ggx_tilt,
 };

@@ -2,113 +2,22 @@
 /* Student-t distribution of slopes (STD): GGX at gamma = 2, Beckmann at gamma = infinity, longer tails below 2.
  * At the horizon D -> 0 for gamma > 2, stays finite at 2 and grows without bound as cos^(2 gamma - 4) for gamma < 2. */
 #include "ndf_class.h"
-#include "ndf_formulas.h"
-#include <stddef.h>
+#include "student_t.h"
 
-/* From here on STD is Beckmann: D differs from it by a factor 1 + q^2/(2 gamma), less than 3e-13 even at 1e-304. */
-#define GAMMA_BECKMANN 1e18
-/* From here on Lambda is 0, as at normal incidence: u^2 would overflow. */
-#define Z_NORMAL 1e150
-
-/* Gamma(a + 1/2)/Gamma(a); from 32 on by its asymptotic series, whose eight terms are then good to 1e-15. */
-static double gamma_ratio(double a)
+static bool std_prepare(struct ndf *ndf)
 {
-	static const double series[] = {39325.0 / 33554432.0, 869.0 / 4194304.0, -399.0 / 262144.0, -21.0 / 32768.0,
-					5.0 / 1024.0,         1.0 / 128.0,       -1.0 / 8.0,        1.0};
-	if (a < 32.0)
-		return tgamma(a + 0.5) / tgamma(a);
-	double sum = 0.0;
-	for (size_t i = 0; i < sizeof(series) / sizeof(series[0]); i++)
-		sum = sum / a + series[i];
-	return sqrt(a) * sum;
-}
-
-static void std_prepare(struct ndf *ndf)
-{
-	if (ndf->gamma != 2.0 && ndf->gamma < GAMMA_BECKMANN)
-		ndf->K = gamma_ratio(ndf->gamma - 1.0) / sqrt(M_PI);
-}
-
-/* D = (1 + q/(gamma-1))^-gamma / (pi sigma_x sigma_y cos^4), with two of the powers put to the cosines:
- * D = v^(2-gamma) / (pi sigma_x sigma_y (cos^2 v)^2), v = 1 + q/(gamma-1). Nothing overflows before D does. */
-static double std_D(const struct ndf *ndf, struct vec3 m)
-{
-	const double gamma = ndf->gamma;
-	if (gamma == 2.0)
-		return ggx_D(ndf, m);
-	if (gamma >= GAMMA_BECKMANN)
-		return beckmann_D(ndf, m);
-	const double a = gamma - 1.0; /* exact */
-	const struct dd q = ndf_q(ndf, m);
-	const double ratio = q.hi / a;
-	const double ratio_lo = (fma(-ratio, a, q.hi) + q.lo) / a;
-	const struct dd v = dd_sum(1.0, ratio);
-	const double v_lo = v.lo + ratio_lo;
-	const double power = 1.0 - 0.5 * gamma;
-	const double z = ndf_cos(m);
-	const double half = pow(v.hi, power) * exp(power * v_lo / v.hi) / (z * z * v.hi);
-	return M_1_PI * (half / ndf->sigma_x) * (half / ndf->sigma_y);
-}
-
-/* S = sum over n of prod_{i<n} (gamma - 1/2 + i)/(3/2 + i) y^n, all terms positive. */
-static double lambda_series(double gamma, double y)
-{
-	double term = 1.0, sum = 1.0;
-	for (int i = 0; term > 0x1p-54 * sum; i++) {
-		term *= y * (gamma - 0.5 + i) / (1.5 + i);
-		sum += term;
-	}
-	return sum;
-}
-
-/* 2F1(1, gamma - 3/2; gamma; x), the even part of Gauss's continued fraction, from the tail forward. a = gamma - 1. */
-static double lambda_fraction(double a, double x, double y, int steps)
-{
-	double tail = 0.0;
-	for (int i = steps; i > 0; i--) {
-		const double m = i;
-		const double A = a + 2.0 * m;
-		const double b = (a * (2.0 * m + 1.5) + 2.0 * m * m - 1.5) / ((A - 1.0) * (A + 1.0)) +
-				 y * (m * (m + 0.5) / ((A - 1.0) * A) + (a + m) * (a + m - 0.5) / (A * (A + 1.0)));
-		const double p = (a + m - 1.0) * (a + m - 1.5) * m * (m + 0.5) * (x * x) /
-				 ((A - 2.0) * (A - 1.0) * (A - 1.0) * A);
-		tail = p / (b - tail);
-	}
-	return 1.0 / ((1.5 + (a - 0.5) * y) / (a + 1.0) - tail);
-}
-
-/* With u = z/sqrt(gamma-1), x = 1/(1+u^2), y = 1-x and e = x^(gamma-3/2), Smith's integral over the Student-t slopes
- * is
- *     Lambda = K e/((2 gamma-3) u) - 1/2 + K u e x S(y)                           small z
- *            = K e/(2 (gamma-1) (2 gamma-3) u) 2F1(1, gamma-3/2; gamma; x)        large z
- * S and 2F1 as above. */
-static double std_lambda(const struct ndf *ndf, struct vec3 w)
-{
-	const double gamma = ndf->gamma;
-	if (gamma == 2.0)
-		return ggx_lambda(ndf, w);
-	if (gamma >= GAMMA_BECKMANN)
-		return beckmann_lambda(ndf, w);
-	const double z = w.z / ndf_r(ndf, w);
-	if (z > Z_NORMAL)
-		return 0.0;
-	const double a = gamma - 1.0;
-	const double u = z / sqrt(a);
-	const double x = 1.0 / (1.0 + u * u);
-	const double y = u * u * x;
-	const double e = exp(-(gamma - 1.5) * log1p(u * u));
-	const double front = ndf->K * e / ((2.0 * gamma - 3.0) * u);
-	if (!(z >= LAMBDA_DIRECT_BELOW))
-		return (front - 0.5) + ndf->K * u * e * x * lambda_series(gamma, y);
-	return front / (2.0 * a) * lambda_fraction(a, x, y, lambda_steps(z));
+	return student_t_prepare(ndf, ndf->gamma - 1.0);
 }
 
 const struct ndf_class ndf_class_std = {
 	.name = "std",
-	.has_gamma = true,
-	.gamma_min = 1.5,
-	.gamma_max = INFINITY,
+	.n_params = 2,
+	.param = {NDF_PARAM_SIGMA,
+		  {.name = "gamma", .min = 1.5, .max = INFINITY, .search_min = 1.5001, .search_max = 1000.0}},
+	.student_t = true,
 	.prepare = std_prepare,
-	.D = std_D,
-	.lambda = std_lambda,
+	.D = student_t_D,
+	.lambda = student_t_lambda,
+	.P2 = student_t_P2,
+	.tilt = student_t_tilt,
 };

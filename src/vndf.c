@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "vndf.h"
+#include "ndf_class.h"
+#include "ndf_formulas.h"
+#include "vndf_student.h"
+#include <gsl/gsl_cdf.h>
+#include <stddef.h>
+
+/* A slope vector (x, y) as (x, y, 1) times any positive factor: slopes of heavy tails leave the range of a double. */
+struct scaled_slopes {
+	double x, y, one;
+};
+
+/* Away from 0 and 1. Uniform numbers are multiples of 2^-53 or coarser: 0 stands for [0, 2^-53). */
+static double inside(double u)
+{
+	return fmin(fmax(u, 0x1p-54), 1.0 - 0x1p-53);
+}
+
+/* |slope| of the density (2/pi) (1 + z^2)^-2 exceeded with probability m <= 1/2. With z = cot(e/2) the tail is
+ * (e - sin e)/(2 pi): Kepler's equation at eccentricity 1. */
+static double t3_tail_quantile(double m)
+{
+	static const double series[] = {151439.0 / 12713500800000.0,
+					1213.0 / 7207200000.0,
+					43.0 / 17248000.0,
+					1.0 / 25200.0,
+					1.0 / 1400.0,
+					1.0 / 60.0,
+					1.0};
+	const double s = cbrt(12.0 * M_PI * m);
+	double e = 0.0;
+	for (size_t i = 0; i < sizeof(series) / sizeof(series[0]); i++)
+		e = e * (s * s) + series[i];
+	e *= s;
+	/* The series alone is exact to 1e-16 for s < 0.3; a step of fourth order takes the rest from 1e-5. */
+	if (s > 0.3) {
+		const double sin_e = sin(e), cos_e = cos(e);
+		const double f = e - sin_e - 2.0 * M_PI * m, f1 = 1.0 - cos_e;
+		const double newton = f / f1;
+		const double halley = f / (f1 - 0.5 * newton * sin_e);
+		e -= f / (f1 - halley * (0.5 * sin_e - halley * cos_e / 6.0));
+	}
+	return 1.0 / tan(0.5 * e);
+}
+
+static double t3_quantile(double u)
+{
+	return u < 0.5 ? -t3_tail_quantile(u) : t3_tail_quantile(1.0 - u);
+}
+
+/* The paper's rational fit of the same quantile. */
+static double t3_quantile_fit(double u)
+{
+	const double v = fabs(2.0 * u - 1.0);
+	const double z =
+		v * (0.46341 + v * (-0.73369 + v * 0.27385)) / (0.597999 + v * (-1.0 + v * (0.309420 + v * 0.093073)));
+	return u > 0.5 ? z : -z;
+}
+
+/* With x = tan(psi) the CDF of x is (sin(theta + psi) + cos_i)/(1 + cos_i). So sin(theta + psi) is k = u1 (1 + cos_i) -
+ * cos_i, its cosine r, and sine and cosine of psi follow by subtracting theta, each written without cancellation. */
+static struct scaled_slopes ggx_slopes(double cos_i, double sin_i, double u1, double u2, enum vndf_ggx how)
+{
+	const double k_plus_cos = u1 * (1.0 + cos_i);
+	const double k = k_plus_cos - cos_i;
+	const double r = sqrt((1.0 - u1) * (sin_i * sin_i + k_plus_cos * (1.0 + cos_i)));
+	const double sin_psi = k > 0.0 ? (k - sin_i) * (k + sin_i) / (k * cos_i + r * sin_i) : k * cos_i - r * sin_i;
+	const double cos_psi = k > 0.0 ? r * cos_i + k * sin_i : k_plus_cos * (cos_i - k) / (r * cos_i - k * sin_i);
+	const double z = how == VNDF_GGX_FIT ? t3_quantile_fit(u2) : t3_quantile(u2);
+	return (struct scaled_slopes){sin_psi, z, cos_psi};
+}
+
+/* The area seen is (cos_i - x sin_i): below -cot it splits into two terms that can be inverted; in (-cot, cot) the
+ * slopes x and -x share cos_i P2(x) of it. */
+static struct scaled_slopes beckmann_slopes(double cos_i, double sin_i, double u1, double u2)
+{
+	const double cot = cos_i / sin_i;
+	const double erf_cot = erf(cot), erfc_cot = erfc(cot);
+	const double by_sine = 0.5 * M_2_SQRTPI * 0.5 * sin_i * exp(-cot * cot);
+	const double by_cosine = 0.5 * cos_i * erfc_cot;
+	const double below = by_sine + by_cosine;
+	const double part = below / (below + cos_i * erf_cot);
+	double x;
+	if (u1 < part) {
+		const double u = u1 / part, p = by_sine / below;
+		x = u < p ? -sqrt(cot * cot - log(u / p))
+			  : M_SQRT1_2 * gsl_cdf_ugaussian_Pinv(0.5 * erfc_cot * inside((u - p) / (1.0 - p)));
+	} else {
+		const double u = inside((u1 - part) / (1.0 - part));
+		x = M_SQRT1_2 * (u < 0.5 ? gsl_cdf_ugaussian_Pinv(0.5 * erfc_cot + u * erf_cot)
+					 : gsl_cdf_ugaussian_Qinv(0.5 * erfc_cot + (1.0 - u) * erf_cot));
+		const double p = 0.5 - 0.5 * x / cot;
+		if (u2 > p)
+			x = -x;
+		u2 = u2 > p ? (u2 - p) / (1.0 - p) : u2 / p;
+	}
+	return (struct scaled_slopes){x, M_SQRT1_2 * gsl_cdf_ugaussian_Pinv(inside(u2)), 1.0};
+}
+
+/* With X = x/sqrt(gamma-1) the slope along wi has density K (1 + X^2)^(1/2-gamma), and y/sqrt(gamma-1+x^2) has
+ * Gamma(gamma)/(sqrt(pi) Gamma(gamma-1/2)) (1 + z^2)^-gamma whatever x is. */
+static struct scaled_slopes std_slopes(const struct ndf *ndf, double cos_i, double sin_i, double u1, double u2)
+{
+	const double a = ndf->gamma - 1.0;
+	const double scale = sqrt(a);
+	const struct student along = {ndf->gamma - 0.5, ndf->K, cos_i, scale * sin_i};
+	const struct student across = {ndf->gamma, a * M_1_PI / ndf->K, 1.0, 0.0};
+	const double w = student_quantile(&along, u1);
+	const double v = student_quantile(&across, u2);
+	return (struct scaled_slopes){scale * copysign(sqrt(-expm1(-w * w)), w),
+				      scale * copysign(sqrt(expm1(v * v)), v), exp(-0.5 * w * w)};
+}
+
+static struct vndf_slopes slopes_of(struct scaled_slopes s)
+{
+	return (struct vndf_slopes){s.x / s.one, s.y / s.one};
+}
+
+struct vndf_slopes vndf_ggx_slopes(double cos_i, double sin_i, double u1, double u2, enum vndf_ggx how)
+{
+	return slopes_of(ggx_slopes(cos_i, sin_i, inside(u1), inside(u2), how));
+}
+
+struct vndf_slopes vndf_beckmann_slopes(double cos_i, double sin_i, double u1, double u2)
+{
+	return slopes_of(beckmann_slopes(cos_i, sin_i, inside(u1), inside(u2)));
+}
+
+bool vndf_supports(const struct ndf *ndf)
+{
+	return ndf->class->student_t || ndf->class == &ndf_class_ggx || ndf->class == &ndf_class_beckmann;
+}
+
+/* Student-t slopes at gamma = 2 are those of GGX, and where they have no K they are Beckmann's. */
+static struct scaled_slopes sample_slopes(const struct ndf *ndf, double cos_i, double sin_i, double u1, double u2)
+{
+	if (ndf->gamma == 2.0)
+		return ggx_slopes(cos_i, sin_i, u1, u2, VNDF_GGX_EXACT);
+	if (ndf->K == 0.0)
+		return beckmann_slopes(cos_i, sin_i, u1, u2);
+	return std_slopes(ndf, cos_i, sin_i, u1, u2);
+}
+
+struct vec3 vndf_sample(const struct ndf *ndf, struct vec3 wi, double u1, double u2)
+{
+	if (!vndf_supports(ndf) || isnan(wi.x + wi.y + wi.z))
+		return (struct vec3){NAN, NAN, NAN};
+	wi.z = wi.z < NDF_COS_MIN ? NDF_COS_MIN : wi.z;
+	const double sigma_x = ndf->sigma_x / ndf->stretch, sigma_y = ndf->sigma_y / ndf->stretch; /* of std */
+	const double x = sigma_x * wi.x, y = sigma_y * wi.y;
+	const double r = sqrt(x * x + y * y);
+	const double length = sqrt(r * r + wi.z * wi.z);
+	const double cos_phi = r > 0.0 ? x / r : 1.0, sin_phi = r > 0.0 ? y / r : 0.0;
+	const struct scaled_slopes s = sample_slopes(ndf, wi.z / length, r / length, inside(u1), inside(u2));
+	struct vec3 m = vec3_unit((struct vec3){-sigma_x * (cos_phi * s.x - sin_phi * s.y),
+						-sigma_y * (sin_phi * s.x + cos_phi * s.y), s.one});
+	m.z = m.z < NDF_COS_MIN ? NDF_COS_MIN : m.z;
+	/* The rounding of m can turn the very last bit of wi.m. */
+	const double cos_d = vec3_dot(wi, m);
+	return cos_d < 0.0 ? vec3_sub(m, vec3_scale(wi, 2.0 * cos_d)) : m;
+}
+
+double vndf_pdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m)
+{
+	const double cos_d = vec3_dot(wi, m);
+	if (wi.z <= 0.0 || m.z <= 0.0 || cos_d <= 0.0)
+		return 0.0;
+	return ndf_G1(ndf, wi) / wi.z * cos_d * ndf_D(ndf, m);
+}
