@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Targets: all (default), check, demo, clean. `make check` and `make demo` install what is missing first.
+# Targets: all (default), check, demo, bench, asan, ubsan, clean. All but `all` and `clean` install what is missing first.
 VERSION := 0.1.0
 
 CC ?= cc
@@ -18,16 +18,17 @@ warnings := -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-pr
 # errno and floating-point traps are not used by the mathematics; without them loops vectorise.
 fpflags := -fno-math-errno -fno-trapping-math -ffp-contract=off
 ALL_CFLAGS = -std=c11 -D_GNU_SOURCE $(warnings) $(OPT) -fopenmp $(fpflags) -Isrc -Idata_readers -Ifit \
-	$(pkg_cflags) -DSTDFIT_VERSION='"$(VERSION)"' $(CFLAGS_$(*F)) $(CFLAGS)
+	$(pkg_cflags) -DSTDFIT_VERSION='"$(VERSION)"' $(CFLAGS_$(basename $(@F))) $(CFLAGS)
 LIBS = $(pkg_libs) -lm
 
 lib_sources := $(wildcard src/*.c) $(wildcard data_readers/*.c) $(filter-out fit/main.c,$(wildcard fit/*.c))
 lib_objects := $(lib_sources:%.c=$(BUILD)/%.o)
 
 # The kernel's loops want vectors; on x86-64 it is compiled a second time for AVX2 and chosen at run time.
-CFLAGS_kernel := -O3
-CFLAGS_kernel_avx2 := -O3 -mavx2 -mfma -DKERNEL_NAME=kernel_avx2
+CFLAGS_kernel := -O3 -Wno-psabi -ffp-contract=fast
+CFLAGS_kernel_avx2 := $(CFLAGS_kernel) -mavx2 -mfma -DKERNEL_NAME=kernel_avx2
 CFLAGS_metrics := -O3
+CFLAGS_bench := -O3
 ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
 lib_objects += $(BUILD)/fit/kernel_avx2.o
 CFLAGS_kernel_pick := -DKERNEL_HAVE_AVX2
@@ -63,6 +64,16 @@ check: setup
 run-tests: $(BUILD)/stdfit $(test_programs)
 	@scripts/run_tests.sh $(BUILD) $(test_programs)
 
+# The whole suite under sanitizers, each in a build of its own.
+asan ubsan: setup
+	@$(MAKE) --no-print-directory BUILD=$(BUILD)-$@ OPT='-O1 -g -fno-omit-frame-pointer $(sanitize_$@)' run-tests
+sanitize_asan := -fsanitize=address
+sanitize_ubsan := -fsanitize=undefined,float-cast-overflow -fno-sanitize-recover=all
+
+bench: setup
+	@$(MAKE) --no-print-directory $(BUILD)/tests/bench
+	$(BUILD)/tests/bench $(BUILD)/bench.csv
+
 demo: setup
 	@$(MAKE) --no-print-directory all
 	@scripts/demo.sh $(BUILD)/stdfit
@@ -70,6 +81,7 @@ demo: setup
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: all setup check run-tests demo clean
+
+.PHONY: all setup check run-tests asan ubsan bench demo clean
 
 -include $(lib_objects:.o=.d) $(BUILD)/fit/main.d $(test_sources:tests/%.c=$(BUILD)/tests/%.d)

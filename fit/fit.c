@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "fit.h"
+#include "algorithms.h"
 #include "metrics.h"
 #include "names.h"
 #include "search.h"
@@ -29,7 +29,7 @@ struct fit_options fit_options_default(void)
 {
 	struct fit_options o = {.gaf = GAF_UNCORRELATED, .fresnel = FRESNEL_DIELECTRIC, .weight = WEIGHT_NONE,
 				.bins = BINS_NODE, .max_theta = 90, .diffuse = true, .specular = true,
-				.ior = NAN, .gamma = NAN, .sigma = NAN, .threads = omp_get_max_threads()};
+				.ior = NAN, .gamma = NAN, .sigma = NAN, .threads = omp_get_max_threads(), .time_s = 10};
 	static const char *const names[] = {"std", "ggx", "beckmann"};
 
 	for (int n = 0; n < 3; n++)
@@ -132,10 +132,10 @@ static enum status result_of(const struct job *job, const struct ndf_class *clas
 	return STATUS_OK;
 }
 
-/* Nested distributions: whoever has a free gamma holds GGX and Beckmann within. */
+/* Nested distributions: whoever has a free gamma holds GGX and Beckmann within. The other algorithms go without. */
 static bool has_nested(const struct job *job, const struct ndf_class *class)
 {
-	return ndf_has_gamma(class) && isnan(job->options->gamma) && job->options->specular;
+	return ndf_has_gamma(class) && isnan(job->options->gamma) && job->options->specular && !job->options->algorithm;
 }
 
 static const char *const nested_name[] = {"ggx", "beckmann"};
@@ -153,7 +153,9 @@ static enum status fit_alone(const struct job *job, const struct ndf_class *clas
 {
 	const double begin = search_clock();
 	struct found found;
-	enum status status = search_run(&job->levels, job->options, class, given, n_given, &found);
+	enum status status = job->options->algorithm
+				     ? algorithm_run(&job->levels.table[SEARCH_LEVELS - 1], job->options, class, &found)
+				     : search_run(&job->levels, job->options, class, given, n_given, &found);
 
 	if (status == STATUS_OK)
 		status = result_of(job, class, &found, r);
@@ -253,7 +255,9 @@ enum status fit_run(const struct fit_context *context, const struct samples *sam
 
 	if (status == STATUS_NO_DATA)
 		return error_set(error, status, "no entry to fit: expected some valid ones that are not all zero");
-	if (status == STATUS_OK)
+	if (status == STATUS_OK && options->algorithm)
+		job.levels.table[SEARCH_LEVELS - 1] = full; /* the others need no thinned tables */
+	else if (status == STATUS_OK)
 		status = levels_init(&job.levels, &full);
 	if (status != STATUS_OK)
 		return error_set(error, status, "%s", status_str(status));

@@ -30,6 +30,8 @@ MUST_CHECK enum status weight_find(const char *name, enum weight *weight);
 
 enum { FIT_NDFS_MAX = 16 };
 
+struct algorithm;
+
 /* struct fit_trace - a step of a search. */
 struct fit_trace {
 	const struct ndf_class *ndf;
@@ -57,6 +59,8 @@ struct fit_options {
 	int starts;            /* extra random starts, which skip the coarsest table; 0 by default */
 	uint64_t seed;
 	int threads;           /* threads of one fit; changes no result */
+	const struct algorithm *algorithm; /* NULL: the default search; else one of algorithms.h, */
+	double time_s;                     /* which ends after this many seconds */
 	/* Called whenever a search finds a better shape on the table it is working on, by one thread at a time; NULL: never. */
 	void (*trace)(void *trace_data, const struct fit_trace *point);
 	void *trace_data;
@@ -116,7 +120,8 @@ MUST_CHECK enum status fit_context_new(struct fit_context **context, int n_phi_d
 void fit_context_free(struct fit_context *context);
 
 /* fit_run - fits every NDF of the options; results[0 .. options->n_ndf - 1], in the options' order.
- * Richer models never end above the nested ones: GGX's and Beckmann's optima are candidates of STD's.
+ * Richer models never end above the nested ones: GGX's and Beckmann's optima are candidates of STD's. Other algorithms
+ * than the default fit each NDF by itself.
  * Errors: STATUS_NO_DATA (no valid entry, all zero), STATUS_NO_MEMORY, STATUS_INTERRUPTED. */
 MUST_CHECK enum status fit_run(const struct fit_context *context, const struct samples *samples,
 			       const struct fit_options *options, struct fit_result *results, struct error *error);

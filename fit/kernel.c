@@ -78,76 +78,162 @@ static void lobe(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *r
 	}
 }
 
-/* One run of a channel: members m (and m2 when `pair`), sums added to `sums`. Constant arguments are folded in. */
-__attribute__((always_inline)) static inline void run(bool pair, bool curved, const float *restrict m,
-						      const float *restrict m2, const float *restrict w,
-						      const float *restrict s, float d, float ks, float tau,
-						      struct kernel_sums *sums)
+/* Eight lanes, whatever the machine has: a compiler without registers this wide makes two operations of each. Sums
+ * are kept lane by lane, so both kernels add in the same order. */
+typedef float lanes __attribute__((vector_size(32), may_alias));
+typedef int32_t lanes_int __attribute__((vector_size(32), may_alias));
+typedef double lanes_double __attribute__((vector_size(64)));
+enum { LANES = 8 };
+
+struct lane_look {
+	lanes d, ks, tau, floor;
+};
+
+struct accumulator {
+	lanes error, below_w, below_s, dd, ds, ss;
+};
+
+/* 1/x to about 1 %, x > 0: the curvature is an estimate, and a division takes longer than all the rest. */
+__attribute__((always_inline)) static inline lanes rough_inverse(lanes x)
 {
-	float error = 0, slope_d = 0, slope_s = 0, dd = 0, ds = 0, ss = 0;
+	const lanes y = (lanes)(0x7ef311c7 - (lanes_int)x);
 
-#pragma omp simd reduction(+ : error, slope_d, slope_s, dd, ds, ss)
-	for (int n = 0; n < RUN; n++) {
-		const float f = d * w[n] + ks * s[n];
-		const float r = m[n] - f;
-		float sign = copysignf(1, r);
+	return y * (2 - x * y);
+}
 
-		error += fabsf(r);
-		if (pair) {
-			const float r2 = m2[n] - f;
+/* Adds the members m[0], m[KERNEL_BLOCK], ... of eight slots. Constant arguments are folded in. */
+__attribute__((always_inline)) static inline void add_lanes(int members, bool curved, const float *m, const float *w_at,
+							    const float *s_at, const struct lane_look *look,
+							    struct accumulator *sum)
+{
+	const lanes w = *(const lanes *)w_at, s = *(const lanes *)s_at, f = look->d * w + look->ks * s;
+	const lanes wide = f + look->floor * w, window = look->tau * wide;
+	lanes_int below = {0}, near = {0};
 
-			sign += copysignf(1, r2);
-			error += fabsf(r2);
-			if (curved) {
-				const float near = (fabsf(r) < tau * f ? 1.0F : 0.0F) + (fabsf(r2) < tau * f ? 1.0F : 0.0F);
-				const float density = near / (f + 1e-30F);
+	for (int a = 0; a < members; a++) {
+		const lanes r = *(const lanes *)(m + a * KERNEL_BLOCK) - f;
+		const lanes size = (lanes)((lanes_int)r & 0x7fffffff);
 
-				dd += density * w[n] * w[n];
-				ds += density * w[n] * s[n];
-				ss += density * s[n] * s[n];
-			}
-		} else if (curved) {
-			const float density = (fabsf(r) < tau * f ? 1.0F : 0.0F) / (f + 1e-30F);
-
-			dd += density * w[n] * w[n];
-			ds += density * w[n] * s[n];
-			ss += density * s[n] * s[n];
-		}
-		slope_d -= sign * w[n];
-		slope_s -= sign * s[n];
+		sum->error += size;
+		below += r < 0; /* -1 for each member below the model */
+		if (curved)
+			near += size < window;
 	}
-	sums->error += (double)error;
-	sums->slope[0] += (double)slope_d;
-	sums->slope[1] += (double)slope_s;
+	const lanes count = __builtin_convertvector(below, lanes);
+
+	sum->below_w += count * w;
+	sum->below_s += count * s;
 	if (curved) {
-		sums->curvature[0] += (double)dd;
-		sums->curvature[1] += (double)ds;
-		sums->curvature[2] += (double)ss;
+		const lanes density = -__builtin_convertvector(near, lanes) * rough_inverse(wide);
+		const lanes dw = density * w, ds = density * s;
+
+		sum->dd += dw * w;
+		sum->ds += dw * s;
+		sum->ss += ds * s;
 	}
 }
 
-static void pass(bool pair, const float *value, const float *w, const float *s, double d, double ks, double tau,
+/* The sums of a block, a lane each, in double. */
+struct lane_sums {
+	lanes_double error, below_w, below_s, sum_w, sum_s, dd, ds, ss;
+};
+
+__attribute__((always_inline)) static inline lanes_double widen(lanes a, lanes b)
+{
+	return __builtin_convertvector(a + b, lanes_double);
+}
+
+static inline double total(const lanes_double *a)
+{
+	double sum = 0;
+
+	for (int n = 0; n < LANES; n++)
+		sum += (*a)[n];
+	return sum;
+}
+
+/* A run, with two accumulators in turn, so that one addition need not wait for the other. */
+__attribute__((always_inline)) static inline void run(int members, bool curved, const float *m, const float *w,
+						      const float *s, const struct lane_look *look,
+						      struct lane_sums *sums)
+{
+	struct accumulator a = {0}, b = {0};
+	lanes sum_w = {0}, sum_s = {0};
+
+	for (int n = 0; n < RUN; n += 2 * LANES) {
+		/* What comes next in memory, the next channel or block: the processor's own prefetching ends at each page. */
+		for (int member = members; member < 2 * members; member++)
+			__builtin_prefetch(m + n + member * KERNEL_BLOCK);
+		add_lanes(members, curved, m + n, w + n, s + n, look, &a);
+		add_lanes(members, curved, m + n + LANES, w + n + LANES, s + n + LANES, look, &b);
+		sum_w += *(const lanes *)(w + n) + *(const lanes *)(w + n + LANES);
+		sum_s += *(const lanes *)(s + n) + *(const lanes *)(s + n + LANES);
+	}
+	sums->error += widen(a.error, b.error);
+	sums->below_w += widen(a.below_w, b.below_w);
+	sums->below_s += widen(a.below_s, b.below_s);
+	sums->sum_w += __builtin_convertvector(sum_w, lanes_double);
+	sums->sum_s += __builtin_convertvector(sum_s, lanes_double);
+	if (curved) {
+		sums->dd += widen(a.dd, b.dd);
+		sums->ds += widen(a.ds, b.ds);
+		sums->ss += widen(a.ss, b.ss);
+	}
+}
+
+__attribute__((always_inline)) static inline void block(int members, bool curved, const float *m, const float *w,
+							const float *s, const struct kernel_look *look,
+							struct kernel_sums *sums)
+{
+	const lanes zero = {0};
+	const struct lane_look all = {zero + (float)look->d, zero + (float)look->ks, zero + (float)look->tau,
+				      zero + (float)look->floor};
+	struct lane_sums lane = {0};
+
+	for (int at = 0; at < KERNEL_BLOCK; at += RUN)
+		run(members, curved, m + at, w + at, s + at, &all, &lane);
+	/* sign(r) is 1 less 2 for each member below, which counts -1; slope = -sum sign(r) (w, s). */
+	*sums = (struct kernel_sums){
+		.error = total(&lane.error),
+		.slope = {-members * total(&lane.sum_w) - 2 * total(&lane.below_w),
+			  -members * total(&lane.sum_s) - 2 * total(&lane.below_s)},
+	};
+	if (curved) {
+		sums->curvature[0] = total(&lane.dd) / look->tau;
+		sums->curvature[1] = total(&lane.ds) / look->tau;
+		sums->curvature[2] = total(&lane.ss) / look->tau;
+	}
+}
+
+static void pass(int members, const float *m, const float *w, const float *s, const struct kernel_look *look,
 		 struct kernel_sums *sums)
 {
-	const float *second = pair ? value + KERNEL_BLOCK : value;
-	const float fd = (float)d, fs = (float)ks, ft = (float)tau;
-
-	*sums = (struct kernel_sums){0};
-	for (int at = 0; at < KERNEL_BLOCK; at += RUN) {
-		const float *m = value + at, *m2 = second + at;
-
-		if (pair && tau > 0)
-			run(true, true, m, m2, w + at, s + at, fd, fs, ft, sums);
-		else if (pair)
-			run(true, false, m, m2, w + at, s + at, fd, fs, ft, sums);
-		else if (tau > 0)
-			run(false, true, m, m2, w + at, s + at, fd, fs, ft, sums);
-		else
-			run(false, false, m, m2, w + at, s + at, fd, fs, ft, sums);
+	switch (look->tau > 0 ? members : -members) {
+	case 1:
+		block(1, true, m, w, s, look, sums);
+		break;
+	case -1:
+		block(1, false, m, w, s, look, sums);
+		break;
+	case 2:
+		block(2, true, m, w, s, look, sums);
+		break;
+	case -2:
+		block(2, false, m, w, s, look, sums);
+		break;
+	case 3:
+		block(3, true, m, w, s, look, sums);
+		break;
+	case -3:
+		block(3, false, m, w, s, look, sums);
+		break;
+	case 6:
+		block(6, true, m, w, s, look, sums);
+		break;
+	case -6:
+		block(6, false, m, w, s, look, sums);
+		break;
 	}
-	if (tau > 0)
-		for (int n = 0; n < 3; n++)
-			sums->curvature[n] /= tau;
 }
 
 const struct kernel KERNEL_NAME = {NAME_TEXT(KERNEL_NAME), lobe, pass};

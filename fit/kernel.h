@@ -34,9 +34,15 @@ struct kernel_slots {
 	const uint16_t *row;
 };
 
+/* Where a pass looks: d = kd/pi and ks. tau: relative width of the window in which the curvature is estimated, 0 for none;
+ * floor: added to the model, in units of the weight, where the window's width is concerned. */
+struct kernel_look {
+	double d, ks, tau, floor;
+};
+
 /* What one pass returns for one channel. With f = d w + ks s, d = kd/pi, and r = m - f over the members of the
  * block: error = sum |r|; slope = -sum sign(r) (w, s), a subgradient of the error by (d, ks); curvature (w w, w s, s s): an
- * estimate of its second derivatives from the members with |r| < tau f (0 when tau = 0). */
+ * estimate of its second derivatives from the members with |r| < tau (f + floor w). */
 struct kernel_sums {
 	double error, slope[2], curvature[3];
 };
@@ -46,9 +52,10 @@ struct kernel {
 	/* lobe - s = geo row[.] G for one block. */
 	void (*lobe)(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *row, const struct kernel_slots *slots,
 		     float *s);
-	/* pass - sums of one channel of one block; value holds KERNEL_BLOCK members, twice that for pairs. */
-	void (*pass)(bool pair, const float *value, const float *w, const float *s, double d, double ks, double tau,
-		     struct kernel_sums *sums);
+	/* pass - sums of one block. Of each slot it takes `members` values, KERNEL_BLOCK apart: 1 of a single and 2 of a
+	 * pair for one channel, 3 or 6 for the three channels under one kd and ks. */
+	void (*pass)(int members, const float *value, const float *w, const float *s,
+		     const struct kernel_look *look, struct kernel_sums *sums);
 };
 
 extern const struct kernel kernel_plain;

@@ -235,7 +235,7 @@ static void guess(struct l1 *l1, double error, const double slope[2])
 
 void l1_update(struct l1 *l1, double error, const double slope[2], const double curvature[3])
 {
-	const bool curved = curvature[0] > 0 || curvature[2] > 0;
+	const bool curved = curvature[0] + curvature[2] > 0 && isfinite(curvature[0] + curvature[2]);
 	const bool improved = add_cut(l1, error, slope);
 	double step[2];
 

@@ -4,9 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An error that no fit can have (kd = ks = 0 gives 1), finite as nlopt wants it. */
-static const double no_fit = 1e3;
-
 enum status objective_init(struct objective *o, const struct table *table, const struct fit_options *options,
 			   const struct ndf_class *class, int threads, enum masking_density density)
 {
@@ -77,21 +74,23 @@ static void lobe_block(struct objective *o, int block)
 	o->kernel->lobe(gaf[o->options->gaf], &g1, o->row, &slots, o->s + (size_t)block * KERNEL_BLOCK);
 }
 
-/* What the three channels ask of a pass: nothing where x is NULL. */
+/* What a pass is asked by each of the problems, one a channel or one for all of them. */
 struct look {
-	const double *x[SAMPLES_CHANNELS];
-	double tau[SAMPLES_CHANNELS];
+	int n_problems;
+	bool wanted[SAMPLES_CHANNELS];
+	struct kernel_look at[SAMPLES_CHANNELS];
 };
 
 static void pass_block(struct objective *o, const struct look *look, int block)
 {
 	const struct table *t = o->table;
 	const size_t at = (size_t)block * KERNEL_BLOCK;
+	const int members = (block < t->n_pair_blocks ? 2 : 1) * SAMPLES_CHANNELS / look->n_problems;
 
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		if (look->x[c])
-			o->kernel->pass(block < t->n_pair_blocks, table_value(t, block, c), t->w + at, o->s + at, look->x[c][0],
-					look->x[c][1], look->tau[c], &o->sums[block][c]);
+	for (int p = 0; p < look->n_problems; p++)
+		if (look->wanted[p])
+			o->kernel->pass(members, table_value(t, block, p), t->w + at, o->s + at, &look->at[p],
+					&o->sums[block][p]);
 }
 
 static void pass_blocks(struct objective *o, const struct look *look, bool lobe, int from, int to)
@@ -118,16 +117,16 @@ static void pass(struct objective *o, const struct look *look, bool lobe, struct
 	} else {
 		pass_blocks(o, look, lobe, 0, n_blocks);
 	}
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-		total[c] = (struct kernel_sums){0};
-		for (int block = 0; look->x[c] && block < o->table->n_blocks; block++) {
-			const struct kernel_sums *sums = &o->sums[block][c];
+	for (int p = 0; p < look->n_problems; p++) {
+		total[p] = (struct kernel_sums){0};
+		for (int block = 0; look->wanted[p] && block < n_blocks; block++) {
+			const struct kernel_sums *sums = &o->sums[block][p];
 
-			total[c].error += sums->error;
+			total[p].error += sums->error;
 			for (int a = 0; a < 2; a++)
-				total[c].slope[a] += sums->slope[a];
+				total[p].slope[a] += sums->slope[a];
 			for (int a = 0; a < 3; a++)
-				total[c].curvature[a] += sums->curvature[a];
+				total[p].curvature[a] += sums->curvature[a];
 		}
 	}
 }
@@ -166,26 +165,6 @@ static void start(const struct objective *o, struct l1 problem[], int n_problems
 	}
 }
 
-static void update(struct l1 problem[], int n_problems, const struct kernel_sums total[])
-{
-	if (n_problems == SAMPLES_CHANNELS) {
-		for (int p = 0; p < n_problems; p++)
-			if (!problem[p].done)
-				l1_update(&problem[p], total[p].error, total[p].slope, total[p].curvature);
-		return;
-	}
-	struct kernel_sums all = {0};
-
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-		all.error += total[c].error;
-		for (int a = 0; a < 2; a++)
-			all.slope[a] += total[c].slope[a];
-		for (int a = 0; a < 3; a++)
-			all.curvature[a] += total[c].curvature[a];
-	}
-	l1_update(problem, all.error, all.slope, all.curvature);
-}
-
 static void finish(const struct objective *o, const struct l1 problem[], int n_problems, struct linear *linear)
 {
 	double sum = 0;
@@ -206,6 +185,14 @@ static void finish(const struct objective *o, const struct l1 problem[], int n_p
 	}
 }
 
+/* A fiftieth of the mean measurement: below it, how near a residual is to 0 is told by the data, not by the model. */
+static double window_floor(const struct objective *o, int p)
+{
+	const struct table *t = o->table;
+
+	return 0.02 * (o->options->gray ? (t->sum[0] + t->sum[1] + t->sum[2]) / SAMPLES_CHANNELS : t->sum[p]) / t->sum_w;
+}
+
 double objective_eval(struct objective *o, const struct shape *shape, double tolerance, bool certify,
 		      struct linear *linear)
 {
@@ -215,26 +202,46 @@ double objective_eval(struct objective *o, const struct shape *shape, double tol
 	bool lobe = true, going = true;
 
 	if (tabulate(o, shape) != STATUS_OK)
-		return no_fit;
+		return OBJECTIVE_NO_FIT;
 	fill_rows(o, shape);
 	start(o, problem, n_problems, tolerance, certify);
 	while (going) {
-		struct look look = {0};
+		struct look look = {.n_problems = n_problems};
 
-		for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-			const struct l1 *p = &problem[n_problems == 1 ? 0 : c];
-
-			look.x[c] = p->done ? NULL : p->x;
-			look.tau[c] = p->tau;
+		for (int p = 0; p < n_problems; p++) {
+			look.wanted[p] = !problem[p].done;
+			look.at[p] = (struct kernel_look){problem[p].x[0], problem[p].x[1], problem[p].tau, window_floor(o, p)};
 		}
 		pass(o, &look, lobe, total);
-		lobe = false;
-		update(problem, n_problems, total);
-		going = false;
-		for (int p = 0; p < n_problems; p++)
+		lobe = going = false;
+		for (int p = 0; p < n_problems; p++) {
+			if (!problem[p].done)
+				l1_update(&problem[p], total[p].error, total[p].slope, total[p].curvature);
 			going |= !problem[p].done;
+		}
 	}
 	finish(o, problem, n_problems, linear);
 	o->start = *linear;
 	return linear->error;
+}
+
+double objective_error(struct objective *o, const struct shape *shape, const double kd[], const double ks[])
+{
+	double error = 0, sum = 0;
+	struct kernel_sums total[SAMPLES_CHANNELS];
+	struct look look = {.n_problems = SAMPLES_CHANNELS};
+
+	if (tabulate(o, shape) != STATUS_OK)
+		return OBJECTIVE_NO_FIT;
+	fill_rows(o, shape);
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		look.wanted[c] = true;
+		look.at[c] = (struct kernel_look){.d = kd[c] / M_PI, .ks = ks[c]};
+	}
+	pass(o, &look, true, total);
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		error += total[c].error;
+		sum += o->table->sum[c];
+	}
+	return error / sum;
 }

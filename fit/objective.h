@@ -19,6 +19,9 @@ struct linear {
 	double lower_bound; /* no kd, ks of this shape goes below it (certified looks only; else 0) */
 };
 
+/* An error that no fit can have (kd = ks = 0 gives 1), finite as nlopt wants it. */
+#define OBJECTIVE_NO_FIT 1e3
+
 struct objective {
 	const struct table *table;
 	const struct fit_options *options;
@@ -47,8 +50,11 @@ void objective_forget(struct objective *objective);
 MUST_CHECK enum status objective_lobe(struct objective *objective, const struct shape *shape);
 
 /* objective_eval - minimises E over kd and ks in the box of the options, to `tolerance` (relative to the sum of w m):
- * by Newton's estimate, or certified. Returns E, or a large finite number outside the NDF's domain. */
+ * by Newton's estimate, or certified. Returns E, or OBJECTIVE_NO_FIT outside the NDF's domain. */
 double objective_eval(struct objective *objective, const struct shape *shape, double tolerance, bool certify,
 		      struct linear *linear);
+
+/* objective_error - E at given kd and ks, in one pass; OBJECTIVE_NO_FIT outside the NDF's domain. */
+double objective_error(struct objective *objective, const struct shape *shape, const double kd[], const double ks[]);
 
 #endif

@@ -107,14 +107,13 @@ static void begin_stage(struct search *s, const char *stage)
 /* Counts an evaluation and tells the trace, if there is one, of a better shape. */
 static void note(struct search *s, const struct shape *shape, double error)
 {
-	const long evaluations = ++s->evaluations;
-
+	s->evaluations++;
 	if (!s->options->trace)
 		return;
 #pragma omp critical(search_trace)
 	if (error < s->stage_best) {
 		const struct fit_trace point = {s->class, s->stage, shape->sigma, shape->gamma, shape->ior, shape->k,
-						error, evaluations, search_clock() - s->begin_s};
+						error, s->evaluations, search_clock() - s->begin_s};
 
 		s->stage_best = error;
 		s->options->trace(s->options->trace_data, &point);
@@ -178,6 +177,24 @@ static void place_of(const struct search *s, const struct shape *shape, double x
 
 		x[d] = fmin(fmax(to_coordinate(c, fmin(value, highest[c])), s->lo[d]), s->hi[d]);
 	}
+}
+
+int search_bounds(const struct fit_options *options, const struct ndf_class *class, double lo[], double hi[])
+{
+	struct search s = {.options = options, .class = class};
+
+	setup(&s);
+	memcpy(lo, s.lo, (size_t)s.dims * sizeof *lo);
+	memcpy(hi, s.hi, (size_t)s.dims * sizeof *hi);
+	return s.dims;
+}
+
+struct shape search_shape(const struct fit_options *options, const struct ndf_class *class, const double x[])
+{
+	struct search s = {.options = options, .class = class};
+
+	setup(&s);
+	return shape_at(&s, x);
 }
 
 /* The grid of the scan. */
@@ -317,7 +334,7 @@ struct stage {
 static const struct stage stages[SEARCH_LEVELS] = {
 	{"thin-1", 0, 0, NLOPT_LN_SBPLX, 0.7, 2e-4, 150},
 	{"thin-2", 8, 0.02, NLOPT_LN_SBPLX, 0.3, 3e-5, 150},
-	{"thin-3", 4, 3e-3, NLOPT_LN_SBPLX, 0.1, 1e-5, 100},
+	{"thin-3", 4, 3e-3, NLOPT_LN_SBPLX, 0.2, 1e-6, 250},
 	{"full", 2, 1e-4, NLOPT_LN_BOBYQA, 0.01, 1e-6, 16},
 };
 
@@ -385,8 +402,8 @@ static enum status refine(struct search *s, struct objective *o, const struct st
 	nlopt_set_maxeval(opt, stage->evaluations);
 	const nlopt_result result = nlopt_optimize(opt, x, &error);
 
-	/* Stopped with the error still falling. */
-	*limited = result == NLOPT_MAXEVAL_REACHED && local.best.error < (1 - 1e-4) * local.first;
+	/* Stopped with the error still falling; 1e-5 is no matter for an E near 0. */
+	*limited = result == NLOPT_MAXEVAL_REACHED && local.best.error < (1 - 1e-4) * local.first - 1e-5;
 	nlopt_destroy(opt);
 	*place = local.best;
 	return result == NLOPT_OUT_OF_MEMORY ? STATUS_NO_MEMORY : STATUS_OK;

@@ -28,6 +28,12 @@ struct found {
 /* search_clock - seconds of a clock that only runs forward. */
 double search_clock(void);
 
+/* search_bounds - the coordinates in which the free parameters are searched, for other searches of the same space: how
+ * many there are (0 .. SEARCH_DIMS), and the bounds of each. */
+int search_bounds(const struct fit_options *options, const struct ndf_class *class, double lo[], double hi[]);
+/* search_shape - the shape at a point in these coordinates; fixed parameters as the options have them. */
+struct shape search_shape(const struct fit_options *options, const struct ndf_class *class, const double x[]);
+
 /* search_run - minimises E over the free parameters among sigma, gamma, ior and k.
  * Given:   the shapes of simpler models that should start a local search too (n_given of them)
  * Errors:  STATUS_NO_MEMORY, STATUS_INTERRUPTED */

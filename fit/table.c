@@ -238,7 +238,7 @@ static int valid_members(const struct geometry *g, const struct samples *samples
 
 struct fill {
 	size_t pair, single; /* next free place of each sort */
-	double sum[SAMPLES_CHANNELS];
+	double sum[SAMPLES_CHANNELS], sum_w;
 };
 
 static void put(struct table *table, const struct samples *samples, int n, size_t to, const size_t *at, int members,
@@ -270,6 +270,7 @@ static void fill_row(struct table *table, const struct samples *samples, int i, 
 	for (int n = g->first[i]; n < g->first[i + 1]; n++) {
 		const int valid = valid_members(g, samples, n, at);
 
+		fill->sum_w += valid * (double)g->w[n];
 		for (int a = 0; a + 1 < valid; a += 2)
 			put(table, samples, n, fill->pair++, at + a, 2, fill->sum);
 		if (valid % 2)
@@ -308,9 +309,11 @@ enum status table_init(struct table *table, const struct geometry *g, const stru
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
 	for (int i = 0; i < SAMPLES_THETA_H; i++)
 		fill_row(table, samples, i, &fill[i]);
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
+	for (int i = 0; i < SAMPLES_THETA_H; i++) {
+		table->sum_w += fill[i].sum_w;
 		for (int c = 0; c < SAMPLES_CHANNELS; c++)
 			table->sum[c] += fill[i].sum[c];
+	}
 	table->n_entries = SAMPLES_CHANNELS * (2 * n_pairs + n_singles);
 	pad_all(table, n_pairs, n_singles);
 	if (!(table->sum[0] + table->sum[1] + table->sum[2] > 0)) {
@@ -413,6 +416,7 @@ enum status table_thin(struct table *table, const struct table *full, int n_slot
 			copy_slot(table, to[n >= pairs_end]++, full, n, n < pairs_end ? 2 : 1, 1 / p[n]);
 	pad_all(table, n_taken[0], n_taken[1]);
 	memcpy(table->sum, full->sum, sizeof table->sum);
+	table->sum_w = full->sum_w;
 	table->n_entries = full->n_entries;
 out:
 	free(p);

@@ -42,7 +42,8 @@ struct table {
 	float *geo, *w;
 	uint16_t *row;
 	float *value;                /* w m; per block: channel by channel, first members, then second ones */
-	double sum[SAMPLES_CHANNELS];/* sum of w m per channel */
+	double sum[SAMPLES_CHANNELS]; /* sum of w m per channel */
+	double sum_w;                 /* sum of w over the entries of one channel */
 	size_t n_entries;            /* entries of three channels */
 };
 

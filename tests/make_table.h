@@ -5,6 +5,7 @@
 
 #include "cook_torrance.h"
 #include "samples.h"
+#include <stdlib.h>
 
 static inline double random_unit(unsigned *seed)
 {

@@ -104,10 +104,11 @@ static double kernel_error(const struct kernel *kernel, const struct geometry *g
 	for (int c = 0; c < 3; c++) {
 		for (int b = 0; b < table.n_blocks; b++) {
 			const size_t at = (size_t)b * KERNEL_BLOCK;
+			const struct kernel_look look = {model->kd[c] / M_PI, model->ks[c], 0.05, 1e-3};
 			struct kernel_sums sums;
 
-			kernel->pass(b < table.n_pair_blocks, table_value(&table, b, c), table.w + at, objective.s + at,
-				     model->kd[c] / M_PI, model->ks[c], 0.05, &sums);
+			kernel->pass(b < table.n_pair_blocks ? 2 : 1, table_value(&table, b, c), table.w + at, objective.s + at,
+				     &look, &sums);
 			error += sums.error;
 		}
 		sum += table.sum[c];

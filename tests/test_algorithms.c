@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The searches beside the default one: each ends with the best it saw, traces its way there, and stops when told to. */
+#include "algorithms.h"
+#include "check.h"
+#include "make_table.h"
+#include "trace.h"
+
+#include <unistd.h>
+
+/* Measurements that no model meets exactly, and the few of them that are looked at. */
+static struct samples material;
+static struct geometry geometry;
+static struct table table;
+
+static struct fit_options options_for(const struct algorithm *algorithm, struct trace *trace)
+{
+	struct fit_options o = fit_options_default();
+
+	o.ndf[0] = ndf_find("std");
+	o.n_ndf = 1;
+	o.threads = 2;
+	o.max_theta = 25;
+	o.time_s = 0.01;
+	o.algorithm = algorithm;
+	o.trace = trace_note;
+	o.trace_data = trace;
+	return o;
+}
+
+static int set_up(void **state)
+{
+	const struct cook_torrance model = make_model("std", 0.12, 1.9, 1.6);
+	const struct fit_options options = options_for(NULL, NULL);
+
+	(void)state;
+	/* Against a search that does not end. */
+	alarm(300);
+	material = make_table(&model, 180, BINS_NODE, 0.2);
+	return geometry_init(&geometry, 180, &options) || table_init(&table, &geometry, &material, 1);
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	table_free(&table);
+	geometry_free(&geometry);
+	samples_free(&material);
+	return 0;
+}
+
+static enum status run(const struct fit_options *options, struct found *found)
+{
+	return algorithm_run(&table, options, options->ndf[0], found);
+}
+
+static void names(void **state)
+{
+	const struct algorithm *found = algorithm_at(1);
+
+	(void)state;
+	assert_string_equal(algorithm_name(NULL), "default");
+	for (int i = 0; i < ALGORITHM_COUNT; i++) {
+		assert_int_equal(algorithm_find(algorithm_name(algorithm_at(i)), &found), STATUS_OK);
+		assert_ptr_equal(found, algorithm_at(i));
+	}
+	assert_int_equal(algorithm_find("crs2-joint", &found), STATUS_OK);
+	assert_int_equal(algorithm_find("crs", &found), STATUS_DOMAIN);
+	assert_string_equal(algorithm_name(found), "crs2-joint");
+}
+
+/* Every point is better than the one before, and later. */
+static void check_trace(const struct trace *trace, const char *label)
+{
+	assert_false(trace->incomplete);
+	if (trace->n == 0)
+		fail_msg("%s: no point in the trace", label);
+	for (size_t i = 0; i < trace->n; i++) {
+		const struct fit_trace *p = &trace->point[i];
+
+		assert_string_equal(p->stage, "full");
+		check_between(p->error, 0, i ? nextafter(p[-1].error, 0) : 1e3, label);
+		check_between(p->seconds, i ? p[-1].seconds : 0, 1e9, label);
+		check_between((double)p->evaluations, i ? (double)p[-1].evaluations + 1 : 1, 1e9, label);
+		check_between(p->sigma, FIT_SIGMA_MIN, FIT_SIGMA_MAX, label);
+	}
+}
+
+static void check_found(const struct found *f, const struct trace *trace, double most_factor, const char *label)
+{
+	/* The last look is one with a finer masking. */
+	check_rel(f->linear.error, trace->point[trace->n - 1].error, 1e-4, label);
+	check_between(f->linear.error, 0, trace->point[0].error * (1 + 1e-4), label);
+	check_between(f->linear.lower_bound, 0, f->linear.error + 1e-7, label);
+	check_between(f->shape.sigma, FIT_SIGMA_MIN, FIT_SIGMA_MAX, label);
+	check_between(f->shape.ior, FIT_IOR_MIN, FIT_IOR_MAX, label);
+	for (int c = 0; c < 3; c++) {
+		check_between(f->linear.kd[c], 0, most_factor, label);
+		check_between(f->linear.ks[c], 0, most_factor, label);
+	}
+	check_between(f->starts_agreeing, 1, f->starts, label);
+	check_between((double)f->evaluations, (double)trace->point[trace->n - 1].evaluations, 1e9, label);
+}
+
+static void each_ends_with_the_best_it_saw(void **state)
+{
+	(void)state;
+	for (int i = 1; i < ALGORITHM_COUNT; i++) {
+		const char *name = algorithm_name(algorithm_at(i));
+		struct trace trace = {.n = 0};
+		const struct fit_options o = options_for(algorithm_at(i), &trace);
+		struct found found;
+
+		assert_int_equal(run(&o, &found), STATUS_OK);
+		check_trace(&trace, name);
+		check_found(&found, &trace, 1, name);
+		assert_true(found.limited);
+		if (!strstr(name, "-joint"))
+			check_between(found.linear.error - found.linear.lower_bound, -1e-8, 1.2e-7, name);
+		trace_free(&trace);
+	}
+}
+
+/* A whole fit by another algorithm: of the one NDF alone, and it says that a limit ended it. */
+static void a_fit_takes_the_algorithm(void **state)
+{
+	struct trace trace = {.n = 0};
+	const struct fit_options o = options_for(algorithm_at(3), &trace);
+	struct fit_context *context;
+	struct fit_result r;
+
+	(void)state;
+	assert_int_equal(fit_context_new(&context, 180, &o), STATUS_OK);
+	assert_int_equal(fit_run(context, &material, &o, &r, NULL), STATUS_OK);
+	fit_context_free(context);
+	assert_int_equal(r.end, FIT_LIMIT);
+	check_trace(&trace, "fit");
+	for (size_t n = 0; n < trace.n; n++)
+		assert_ptr_equal(trace.point[n].ndf, o.ndf[0]);
+	check_rel(r.error, trace.point[trace.n - 1].error, 1e-4, "fit");
+	trace_free(&trace);
+}
+
+/* The time decides where a search ends, nothing but the seed how it gets there. */
+static void the_way_is_the_same(void **state)
+{
+	(void)state;
+	for (int i = 1; i < ALGORITHM_COUNT; i++) {
+		const char *name = algorithm_name(algorithm_at(i));
+		struct trace a = {.n = 0}, b = {.n = 0};
+		struct fit_options o = options_for(algorithm_at(i), &a), again = options_for(algorithm_at(i), &b);
+		struct found found;
+
+		o.seed = again.seed = 7;
+		again.threads = 1;
+		assert_int_equal(run(&o, &found), STATUS_OK);
+		assert_int_equal(run(&again, &found), STATUS_OK);
+		for (size_t n = 0; n < a.n && n < b.n; n++) {
+			check_abs(a.point[n].error, b.point[n].error, 0, name);
+			assert_int_equal(a.point[n].evaluations, b.point[n].evaluations);
+		}
+		trace_free(&a);
+		trace_free(&b);
+	}
+}
+
+/* Fewer and more parameters: one to search, none, all of them without a bound. */
+static void any_number_of_parameters(void **state)
+{
+	(void)state;
+	for (int i = 1; i < ALGORITHM_COUNT; i++) {
+		const char *name = algorithm_name(algorithm_at(i));
+		for (int variant = 0; variant < 4; variant++) {
+			struct trace trace = {.n = 0};
+			struct fit_options o = options_for(algorithm_at(i), &trace);
+			struct found found;
+
+			o.time_s = 0.002;
+			if (variant < 2) {
+				o.gray = true;
+				o.ior = 1.5;
+				o.gamma = 2.2;
+				o.diffuse = false;
+			}
+			if (variant == 1)
+				o.sigma = 0.15;
+			if (variant == 2) {
+				o.unbounded = true;
+				o.fresnel = FRESNEL_CONDUCTOR;
+			}
+			if (variant == 3)
+				o.specular = false;
+			assert_int_equal(run(&o, &found), STATUS_OK);
+			check_trace(&trace, name);
+			check_found(&found, &trace, o.unbounded ? 1e6 : 1, name);
+			if (variant == 1)
+				check_abs(found.shape.sigma, 0.15, 0, name);
+			if (variant < 2) {
+				check_abs(found.linear.kd[0] + found.linear.kd[1] + found.linear.kd[2], 0, 0, name);
+				check_abs(found.linear.ks[2], found.linear.ks[0], 0, name);
+			}
+			if (variant == 3)
+				check_abs(found.linear.ks[0] + found.linear.ks[1] + found.linear.ks[2], 0, 0, name);
+			trace_free(&trace);
+		}
+	}
+}
+
+struct canceller {
+	atomic_bool cancel;
+	struct trace trace;
+};
+
+static void cancel_at_once(void *data, const struct fit_trace *point)
+{
+	struct canceller *c = data;
+
+	trace_note(&c->trace, point);
+	c->cancel = true;
+}
+
+/* With all the time of the world, each stops at the next shape after it is told to. */
+static void each_stops_when_cancelled(void **state)
+{
+	(void)state;
+	for (int i = 1; i < ALGORITHM_COUNT; i++) {
+		struct canceller c = {.cancel = false};
+		struct fit_options o = options_for(algorithm_at(i), NULL);
+		struct found found;
+
+		o.time_s = 1e6;
+		o.trace = cancel_at_once;
+		o.trace_data = &c;
+		o.cancel = &c.cancel;
+		assert_int_equal(run(&o, &found), STATUS_INTERRUPTED);
+		assert_int_equal(c.trace.n, 1);
+		trace_free(&c.trace);
+	}
+}
+
+/* One pass at given kd and ks says what the inner solve said of them. */
+static void the_error_of_a_point(void **state)
+{
+	const struct fit_options o = options_for(NULL, NULL);
+	const struct shape shape = {0.2, 1.8, 1.5, 0}, nonsense = {-1, 1.8, 1.5, 0};
+	const double none[3] = {0, 0, 0};
+	struct objective objective;
+	struct linear linear;
+
+	(void)state;
+	assert_int_equal(objective_init(&objective, &table, &o, o.ndf[0], 1, MASKING_FINE), STATUS_OK);
+	objective_eval(&objective, &shape, 1e-7, true, &linear);
+	check_rel(objective_error(&objective, &shape, linear.kd, linear.ks), linear.error, 1e-7, "at the optimum");
+	check_rel(objective_error(&objective, &shape, none, none), 1, 1e-6, "black");
+	check_abs(objective_error(&objective, &nonsense, none, none), OBJECTIVE_NO_FIT, 0, "outside the domain");
+	objective_free(&objective);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(names),
+		cmocka_unit_test(the_error_of_a_point),
+		cmocka_unit_test(each_ends_with_the_best_it_saw),
+		cmocka_unit_test(a_fit_takes_the_algorithm),
+		cmocka_unit_test(the_way_is_the_same),
+		cmocka_unit_test(any_number_of_parameters),
+		cmocka_unit_test(each_stops_when_cancelled),
+	};
+
+	return cmocka_run_group_tests_name("algorithms", tests, set_up, tear_down);
+}
