@@ -48,8 +48,10 @@ enum status batch_init(struct batch *batch, const struct options *options, const
 
 void batch_free(struct batch *batch)
 {
-	for (size_t i = 0; batch->file && i < batch->n; i++)
+	for (size_t i = 0; batch->file && i < batch->n; i++) {
 		csv_table_free(&batch->file[i].rows);
+		trace_free(&batch->file[i].trace);
+	}
 	free(batch->file);
 	free((char *)batch->options_text);
 	*batch = (struct batch){0};
@@ -110,6 +112,10 @@ static enum status process(struct run *run, struct batch_file *file)
 	struct fit_options fit = run->batch->options->fit;
 	struct samples samples;
 	fit.threads = run->threads_per_fit;
+	if (run->batch->options->trace) {
+		fit.trace = trace_note;
+		fit.trace_data = &file->trace;
+	}
 	enum status status = merl_read(file->path, fit.threads, &samples, &file->error);
 	if (!status) {
 		result_input(file->input, &samples);

@@ -6,12 +6,14 @@
 #include "files.h"
 #include "options.h"
 #include "store.h"
+#include "trace.h"
 
 /* struct batch_file - one file and what came of it. */
 struct batch_file {
 	const char *path;
 	char input[RESULT_INPUT_SIZE]; /* "" until it is read */
 	struct csv_table rows;         /* new rows: none for NDFs that the store has, a failure's row per NDF */
+	struct trace trace;            /* if the options want one */
 	bool done;                     /* false: not begun, or interrupted */
 	bool failed;
 	struct error error; /* why it failed */

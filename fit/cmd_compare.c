@@ -3,6 +3,7 @@
 #include "atomic_file.h"
 #include "batch.h"
 #include "report.h"
+#include "store.h"
 #include "text_quote.h"
 
 #include <gsl/gsl_statistics_double.h>
@@ -187,7 +188,9 @@ static enum status write_output(const struct options *options, const struct csv_
 		report_output(table, options_show(options), report_table);
 	if (!options->output)
 		return STATUS_OK;
-	const enum status status = atomic_file_open(&file, options->output, error);
+	enum status status = store_backup(options->output, error);
+	if (!status)
+		status = atomic_file_open(&file, options->output, error);
 	if (status)
 		return status;
 	(options->json ? report_json : report_csv)(file.stream, table);
@@ -257,8 +260,8 @@ static int compare_fits(const struct options *options)
 		files_free(&files);
 		return EXIT_FAILED;
 	}
-	int code = files.n ? batch_run(&batch) : EXIT_FAILED;
-	enum status status = STATUS_OK;
+	enum status status = options->output ? store_probe(options->output, &error) : STATUS_OK;
+	int code = files.n && !status ? batch_run(&batch) : EXIT_FAILED;
 	for (size_t i = 0; i < batch.n && !status; i++)
 		if (csv_table_move(&rows, &batch.file[i].rows))
 			status = error_set(&error, STATUS_NO_MEMORY, "out of memory");

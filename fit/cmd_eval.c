@@ -44,9 +44,13 @@ static enum status evaluate(struct evaluation *e, const struct cook_torrance *mo
 			    struct error *error)
 {
 	struct fit_metrics m;
-	const enum status status = fit_eval(&e->samples, model, fit, &m, error);
-	if (status)
-		return status;
+	struct error why;
+	const enum status status = fit_eval(&e->samples, model, fit, &m, &why);
+	if (status) {
+		char name[TEXT_QUOTE_SIZE];
+		text_quote(e->options->path[0], name, sizeof name);
+		return error_set(error, status, "cannot compare with '%s': %.200s", name, why.text);
+	}
 	const double number[EVAL_COLUMNS] = {
 		[EVAL_NONE] = m.error[WEIGHT_NONE],
 		[EVAL_COSINE] = m.error[WEIGHT_COSINE],

@@ -5,6 +5,7 @@
 #include "report.h"
 
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
 struct sink {
@@ -93,6 +94,10 @@ static enum status finish(struct sink *sink, bool complete)
 
 static int run(struct sink *sink, struct batch *batch)
 {
+	if (sink->options->json && sink->options->output && store_probe(sink->options->output, &sink->error)) {
+		report_error("%s", sink->error.text);
+		return EXIT_FAILED;
+	}
 	if (sink->stored && store_open(&sink->store, sink->options->output, sink->options->resume, &sink->error)) {
 		report_error("%s", sink->error.text);
 		return EXIT_FAILED;
@@ -113,6 +118,41 @@ static int run(struct sink *sink, struct batch *batch)
 	return code;
 }
 
+/* The courses of all searches, in the order of the files. When nothing was searched an older file stays as it is. */
+static enum status write_trace(const struct batch *batch, struct atomic_file *file, struct error *error)
+{
+	const char *algorithm = algorithm_name(batch->options->fit.algorithm);
+	bool any = false, incomplete = false;
+	csv_write_header(file->stream, trace_columns, TRACE_COLUMNS);
+	for (size_t i = 0; i < batch->n; i++) {
+		char *material = result_material(batch->file[i].path);
+		if (material)
+			trace_write(file->stream, material, algorithm, &batch->file[i].trace);
+		incomplete |= !material || batch->file[i].trace.incomplete;
+		any |= batch->file[i].trace.n > 0;
+		free(material);
+	}
+	if (any && !incomplete)
+		return atomic_file_commit(file, error);
+	atomic_file_abort(file);
+	return incomplete ? error_set(error, STATUS_NO_MEMORY, "out of memory") : STATUS_OK;
+}
+
+static int run_traced(struct sink *sink, struct batch *batch)
+{
+	struct atomic_file file;
+	struct error error;
+	if (atomic_file_open(&file, sink->options->trace, &error)) {
+		report_error("%s", error.text);
+		return EXIT_FAILED;
+	}
+	const int code = run(sink, batch);
+	if (!write_trace(batch, &file, &error))
+		return code;
+	report_error("%s", error.text);
+	return code == EXIT_DONE ? EXIT_FAILED : code;
+}
+
 int cmd_fit(int argc, char **argv, atomic_bool *cancel)
 {
 	struct options options;
@@ -131,7 +171,7 @@ int cmd_fit(int argc, char **argv, atomic_bool *cancel)
 			    .show = options_show(&options),
 			    .stored = options.output && !options.json,
 			    .rows = csv_table_make(result_columns, RESULT_COLUMNS)};
-	code = files.n ? run(&sink, &batch) : EXIT_FAILED;
+	code = !files.n ? EXIT_FAILED : options.trace ? run_traced(&sink, &batch) : run(&sink, &batch);
 	csv_table_free(&sink.rows);
 	if (sink.stored)
 		store_close(&sink.store);

@@ -56,9 +56,12 @@ struct range {
 	double min, median, max;
 };
 
+/* A cosine nearer to 0 is that of an entry on the horizon, to rounding; a measurement there is nothing strange. */
+#define HORIZON 1e-9
+
 /* What is counted over the entries. Ranges are of valid entries above the horizon; NaN when there is none. */
 struct census {
-	size_t valid, above, valid_above;
+	size_t valid, above, valid_above, valid_below;
 	struct range range[SAMPLES_CHANNELS];
 };
 
@@ -75,6 +78,7 @@ static void count_entries(const struct samples *samples, enum bins bins, float *
 				const bool above = entry_in_range(wi, wo, 0), valid = !isnan(samples->value[0][at]);
 				census->above += above;
 				census->valid += valid;
+				census->valid_below += valid && fmin(wi.z, wo.z) < -HORIZON;
 				if (!above || !valid)
 					continue;
 				for (int c = 0; c < SAMPLES_CHANNELS; c++)
@@ -124,7 +128,7 @@ static void write_suspects(char text[SUSPECTS_SIZE], const struct samples *sampl
 	else if (zero)
 		strcpy(text, "all zero");
 	add_count(text, "masked above the horizon", census->above - census->valid_above);
-	add_count(text, "valid below the horizon", census->valid - census->valid_above);
+	add_count(text, "valid below the horizon", census->valid_below);
 	add_count(text, "non-finite", samples->n_nonfinite);
 }
 

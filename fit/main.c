@@ -30,8 +30,9 @@ static void catch_signals(void)
 	sigemptyset(&action.sa_mask);
 	sigaction(SIGINT, &action, NULL);
 	sigaction(SIGTERM, &action, NULL);
-	/* A reader that goes away shows as a failed write. */
+	/* A reader that goes away, and a file that outgrows its limit, show as a failed write. */
 	signal(SIGPIPE, SIG_IGN);
+	signal(SIGXFSZ, SIG_IGN);
 }
 
 /* Without this, a file could get the number of a closed standard stream and take what is meant for that. */
@@ -62,8 +63,8 @@ static void print_version(void)
 static int dispatch(int argc, char **argv)
 {
 	static int (*const run[COMMAND_COUNT])(int, char **, atomic_bool *) = {
-		[COMMAND_FIT] = cmd_fit,   [COMMAND_COMPARE] = cmd_compare, [COMMAND_EVAL] = cmd_eval,
-		[COMMAND_INFO] = cmd_info, [COMMAND_SYNTH] = cmd_synth,
+		[COMMAND_FIT] = cmd_fit,   [COMMAND_COMPARE] = cmd_compare, [COMMAND_BENCH] = cmd_bench,
+		[COMMAND_EVAL] = cmd_eval, [COMMAND_INFO] = cmd_info,       [COMMAND_SYNTH] = cmd_synth,
 	};
 	const char *first = argc > 1 ? argv[1] : "";
 	if (!strcmp(first, "--version")) {

@@ -11,47 +11,71 @@
 
 #define FIT (1u << COMMAND_FIT)
 #define COMPARE (1u << COMMAND_COMPARE)
+#define BENCH (1u << COMMAND_BENCH)
 #define EVAL (1u << COMMAND_EVAL)
 #define INFO (1u << COMMAND_INFO)
 #define SYNTH (1u << COMMAND_SYNTH)
 #define FITS (FIT | COMPARE)
+#define SEARCHES (FITS | BENCH)
 #define MODEL (EVAL | SYNTH)
 #define AT(member) offsetof(struct options, member)
 
 const struct option_spec option_specs[] = {
-	{"output", 'o', KIND_TEXT, FITS, NOT_RECORDED, "FILE",
-	 "write the table there; an older FILE becomes FILE~ unless --resume is given", AT(output), 0, 0},
-	{"json", 0, KIND_ON, FITS | EVAL | INFO, NOT_RECORDED, NULL, "JSON instead of CSV", AT(json), 0, 0},
-	{"table", 0, KIND_ON, FITS | EVAL | INFO, NOT_RECORDED, NULL,
+	{"output", 'o', KIND_TEXT, FIT, NOT_RECORDED, "FILE",
+	 "write the table there; an older FILE becomes FILE~, with --resume only if it has rows to redo", AT(output), 0,
+	 0},
+	{"output", 'o', KIND_TEXT, COMPARE, NOT_RECORDED, "FILE", "write the table there; an older FILE becomes FILE~",
+	 AT(output), 0, 0},
+	{"json", 0, KIND_ON, SEARCHES | EVAL | INFO, NOT_RECORDED, NULL, "JSON instead of CSV", AT(json), 0, 0},
+	{"table", 0, KIND_ON, SEARCHES | EVAL | INFO, NOT_RECORDED, NULL,
 	 "a readable table on standard output even if that is no terminal", AT(readable), 0, 0},
 	{"resume", 0, KIND_ON, FIT, NOT_RECORDED, NULL,
 	 "keep the rows of -o FILE that were made from the same bytes with the same options", AT(resume), 0, 0},
 	{"recursive", 'r', KIND_ON, FITS, NOT_RECORDED, NULL, "directories: take the files below them too",
 	 AT(recursive), 0, 0},
-	{"quiet", 'q', KIND_ON, FITS, NOT_RECORDED, NULL, "no progress line, no summary", AT(quiet), 0, 0},
-	{"threads", 0, KIND_INT, FITS | MODEL, NOT_RECORDED, "N", "threads; changes no result", AT(fit.threads), 1,
+	{"quiet", 'q', KIND_ON, SEARCHES, NOT_RECORDED, NULL, "no progress line, no summary", AT(quiet), 0, 0},
+	{"threads", 0, KIND_INT, SEARCHES | MODEL, NOT_RECORDED, "N", "threads; changes no result", AT(fit.threads), 1,
 	 1024},
 	{"ndf", 0, KIND_NDFS, FITS, RECORDED_WITHIN, "LIST", "NDFs to fit, separated by commas", AT(fit.ndf), 0, 0},
-	{"ndf", 0, KIND_NDFS, MODEL, NOT_RECORDED, "NAME", "NDF of the model", AT(fit.ndf), 0, 0},
-	{"gaf", 0, KIND_GAF, FITS | MODEL, RECORDED, "NAME", "masking and shadowing G", AT(fit.gaf), 0, 0},
-	{"fresnel", 0, KIND_FRESNEL, FITS | MODEL, RECORDED, "NAME", "Fresnel term F", AT(fit.fresnel), 0, 0},
-	{"weight", 0, KIND_WEIGHT, FITS, RECORDED, "NAME", "how an entry counts in the error", AT(fit.weight), 0, 0},
-	{"bins", 0, KIND_BINS, FITS | MODEL | INFO, RECORDED, "NAME", "where the entries of a table stand",
+	{"ndf", 0, KIND_NDFS, MODEL | BENCH, NOT_RECORDED, "NAME", "NDF of the model", AT(fit.ndf), 0, 0},
+	{"gaf", 0, KIND_GAF, SEARCHES | MODEL, RECORDED, "NAME", "masking and shadowing G", AT(fit.gaf), 0, 0},
+	{"fresnel", 0, KIND_FRESNEL, SEARCHES | MODEL, RECORDED, "NAME", "Fresnel term F", AT(fit.fresnel), 0, 0},
+	{"weight", 0, KIND_WEIGHT, SEARCHES, RECORDED, "NAME", "how an entry counts in the error", AT(fit.weight), 0,
+	 0},
+	{"bins", 0, KIND_BINS, SEARCHES | MODEL | INFO, RECORDED, "NAME", "where the entries of a table stand",
 	 AT(fit.bins), 0, 0},
-	{"max-theta", 0, KIND_NUMBER, FITS | EVAL, RECORDED, "DEG",
+	{"max-theta", 0, KIND_NUMBER, SEARCHES | EVAL, RECORDED, "DEG",
 	 "leave out entries whose theta_i or theta_o exceeds this", AT(fit.max_theta), 1, 90},
-	{"unbounded", 0, KIND_ON, FITS, RECORDED, NULL, "kd and ks may exceed 1", AT(fit.unbounded), 0, 0},
-	{"no-diffuse", 0, KIND_OFF, FITS, RECORDED, NULL, "kd = 0", AT(fit.diffuse), 0, 0},
-	{"no-specular", 0, KIND_OFF, FITS, RECORDED, NULL, "ks = 0", AT(fit.specular), 0, 0},
-	{"gray", 0, KIND_ON, FITS, RECORDED, NULL, "one kd and one ks for the three channels", AT(fit.gray), 0, 0},
-	{"ior", 0, KIND_NUMBER, FITS, RECORDED, "N", "fix the index of refraction", AT(fit.ior), FIT_IOR_MIN,
+	{"unbounded", 0, KIND_ON, SEARCHES, RECORDED, NULL, "kd and ks may exceed 1", AT(fit.unbounded), 0, 0},
+	{"no-diffuse", 0, KIND_OFF, SEARCHES, RECORDED, NULL, "kd = 0", AT(fit.diffuse), 0, 0},
+	{"no-specular", 0, KIND_OFF, SEARCHES, RECORDED, NULL, "ks = 0", AT(fit.specular), 0, 0},
+	{"gray", 0, KIND_ON, SEARCHES, RECORDED, NULL, "one kd and one ks for the three channels", AT(fit.gray), 0, 0},
+	{"ior", 0, KIND_NUMBER, SEARCHES, RECORDED, "N", "fix the index of refraction", AT(fit.ior), FIT_IOR_MIN,
 	 FIT_IOR_MAX},
-	{"gamma", 0, KIND_GAMMA, FITS, RECORDED, "G", "fix STD's gamma (inf is Beckmann)", AT(fit.gamma), FIT_GAMMA_MIN,
-	 FIT_GAMMA_MAX},
-	{"sigma", 0, KIND_NUMBER, FITS, RECORDED, "S", "fix the roughness", AT(fit.sigma), FIT_SIGMA_MIN,
+	{"gamma", 0, KIND_GAMMA, SEARCHES, RECORDED, "G", "fix STD's gamma (inf is Beckmann)", AT(fit.gamma),
+	 FIT_GAMMA_MIN, FIT_GAMMA_MAX},
+	{"sigma", 0, KIND_NUMBER, SEARCHES, RECORDED, "S", "fix the roughness", AT(fit.sigma), FIT_SIGMA_MIN,
 	 FIT_SIGMA_MAX},
+	{"algorithm", 0, KIND_ALGORITHM, FIT, RECORDED_ALGORITHM, "NAME",
+	 "the search; others than the default search the full table with nlopt until --time is up, kd and ks solved "
+	 "for "
+	 "inside or (-joint) searched as well",
+	 AT(fit.algorithm), 0, 0},
+	{"algorithm", 0, KIND_ALGORITHMS, BENCH, NOT_RECORDED, "LIST",
+	 "searches to run, separated by commas; all if not given", AT(algorithm), 0, 0},
+	{"time", 0, KIND_NUMBER, FIT, RECORDED_ALGORITHM, "SECONDS",
+	 "for each fit by another --algorithm than the default; its results then depend on the machine", AT(fit.time_s),
+	 1e-3, 1e6},
+	{"time", 0, KIND_NUMBER, BENCH, NOT_RECORDED, "SECONDS", "for each algorithm", AT(fit.time_s), 1e-3, 1e6},
+	{"trace", 0, KIND_TEXT, FIT, NOT_RECORDED, "FILE.csv",
+	 "write there how the best error of each search fell with evaluations and seconds; the default's stages scan "
+	 "and "
+	 "thin-N tell the error of a sample of the table, an estimate",
+	 AT(trace), 0, 0},
+	{"trace", 0, KIND_TEXT, BENCH, NOT_RECORDED, "FILE.csv",
+	 "write the curves there: how the error of each algorithm fell with evaluations and seconds", AT(trace), 0, 0},
 	{"starts", 0, KIND_INT, FITS, RECORDED, "N", "more searches, from random shapes", AT(fit.starts), 0, 100000},
-	{"seed", 0, KIND_SEED, FITS, RECORDED, "N", "seed of the random shapes", AT(fit.seed), 0, 0},
+	{"seed", 0, KIND_SEED, SEARCHES, RECORDED, "N", "seed of the random shapes", AT(fit.seed), 0, 0},
 	{"within", 0, KIND_PERCENT, FIT, RECORDED_WITHIN, "P%",
 	 "per material only the simplest model whose error is within P% of the best", AT(within), 0, 1000},
 	{"sigma", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "S", "roughness", AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
@@ -86,6 +110,9 @@ const char *option_choice(enum option_kind kind, int i)
 		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
 	case KIND_BINS:
 		return i < BINS_COUNT ? bins_name((enum bins)i) : NULL;
+	case KIND_ALGORITHM:
+	case KIND_ALGORITHMS:
+		return i < ALGORITHM_COUNT ? algorithm_name(algorithm_at(i)) : NULL;
 	default:
 		return NULL;
 	}
@@ -100,6 +127,8 @@ static enum status choice_find(enum option_kind kind, const char *text, void *va
 		return fresnel_find(text, value);
 	case KIND_WEIGHT:
 		return weight_find(text, value);
+	case KIND_ALGORITHM:
+		return algorithm_find(text, value);
 	default:
 		return bins_find(text, value);
 	}
@@ -227,6 +256,24 @@ static enum status parse_ndfs(const char *text, struct fit_options *fit, struct 
 	return STATUS_OK;
 }
 
+static enum status parse_algorithms(const char *text, struct options *options, struct error *error)
+{
+	char name[64];
+	int n = 0;
+	for (const char *rest = text; rest; n++) {
+		const struct algorithm *algorithm;
+		rest = next_item(rest, name, sizeof name);
+		if (algorithm_find(name, &algorithm))
+			return expected_choice(KIND_ALGORITHMS, error);
+		for (int i = 0; i < n; i++)
+			if (options->algorithm[i] == algorithm)
+				return error_set(error, STATUS_DOMAIN, "'%s' stands there twice", name);
+		options->algorithm[n] = algorithm;
+	}
+	options->n_algorithms = n;
+	return STATUS_OK;
+}
+
 enum status option_parse(struct options *options, const struct option_spec *spec, const char *text, struct error *error)
 {
 	void *value = (char *)options + spec->offset;
@@ -253,6 +300,8 @@ enum status option_parse(struct options *options, const struct option_spec *spec
 		return parse_phi(text, value, error);
 	case KIND_NDFS:
 		return parse_ndfs(text, &options->fit, error);
+	case KIND_ALGORITHMS:
+		return parse_algorithms(text, options, error);
 	default:
 		return choice_find(spec->kind, text, value) ? expected_choice(spec->kind, error) : STATUS_OK;
 	}
@@ -264,6 +313,12 @@ static void write_ndfs(FILE *file, const struct fit_options *fit)
 {
 	for (int i = 0; i < fit->n_ndf; i++)
 		fprintf(file, "%s%s", i ? "," : "", ndf_name(fit->ndf[i]));
+}
+
+static void write_algorithms(FILE *file, const struct options *options)
+{
+	for (int i = 0; i < options->n_algorithms; i++)
+		fprintf(file, "%s%s", i ? "," : "", algorithm_name(options->algorithm[i]));
 }
 
 void option_write(FILE *file, const struct options *options, const struct option_spec *spec)
@@ -305,6 +360,12 @@ void option_write(FILE *file, const struct options *options, const struct option
 		break;
 	case KIND_BINS:
 		fputs(bins_name(*(const enum bins *)value), file);
+		break;
+	case KIND_ALGORITHM:
+		fputs(algorithm_name(*(const struct algorithm *const *)value), file);
+		break;
+	case KIND_ALGORITHMS:
+		write_algorithms(file, options);
 		break;
 	}
 }

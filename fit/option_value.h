@@ -23,10 +23,17 @@ enum option_kind {
 	KIND_FRESNEL,
 	KIND_WEIGHT,
 	KIND_BINS,
+	KIND_ALGORITHM,
+	KIND_ALGORITHMS,
 };
 
 /* Whether a value belongs to the text that results are recorded with. */
-enum recorded { NOT_RECORDED, RECORDED, RECORDED_WITHIN /* only with --within */ };
+enum recorded {
+	NOT_RECORDED,
+	RECORDED,
+	RECORDED_WITHIN,    /* only with --within */
+	RECORDED_ALGORITHM, /* only with another algorithm than the default */
+};
 
 struct option_spec {
 	const char *name;

@@ -22,6 +22,14 @@ static const struct {
 			     "Fits MERL files or directories, or takes one result table (FILE.csv) as it is. Shows\n"
 			     "the error of each NDF, the winner, by how much STD's error is lower than GGX's and\n"
 			     "Beckmann's (in % of theirs), then mean, median, worst and wins.\n"},
+	[COMMAND_BENCH] =
+		{"bench", "FILE", "error against run time, the default search beside others",
+		 "Fits one NDF to one MERL file, read already, with one algorithm after the other, each alone\n"
+		 "on all threads, and shows the error that each had reached after 0.1, 0.3, 1, 3 and 10 s, at\n"
+		 "the end of --time, and the shapes it had evaluated. Every error is that of the full table:\n"
+		 "shapes that the default search judged by a sample of the table are judged anew afterwards.\n"
+		 "Its seconds include that sampling and, for std, the fits of ggx and beckmann inside; where\n"
+		 "it ends early its error stays. The figures depend on the machine and on what else it does.\n"},
 	[COMMAND_EVAL] = {"eval", "FILE", "error of given parameters, no fit",
 			  "Measures how far a model is from a MERL file, under every weight and metric. The model\n"
 			  "comes from options, or from rows of a result table (--from), which also bring their\n"
@@ -39,6 +47,20 @@ static bool spec_applies(const struct option_spec *spec, enum command command)
 	return spec->commands & 1u << command;
 }
 
+static bool is_recorded(const struct options *options, const struct option_spec *spec)
+{
+	switch (spec->recorded) {
+	case RECORDED:
+		return true;
+	case RECORDED_WITHIN:
+		return !isnan(options->within);
+	case RECORDED_ALGORITHM:
+		return options->fit.algorithm;
+	default:
+		return false;
+	}
+}
+
 char *options_text(const struct options *options)
 {
 	char *text = NULL;
@@ -48,7 +70,7 @@ char *options_text(const struct options *options)
 		return NULL;
 	const char *between = "";
 	for (const struct option_spec *spec = option_specs; spec->name; spec++) {
-		if (spec->recorded == NOT_RECORDED || (spec->recorded == RECORDED_WITHIN && isnan(options->within)))
+		if (!is_recorded(options, spec))
 			continue;
 		fprintf(file, "%s%s=", between, spec->name);
 		option_write(file, options, spec);
@@ -66,7 +88,7 @@ char *options_text(const struct options *options)
 
 static bool has_default(const struct options *defaults, const struct option_spec *spec)
 {
-	if (!spec->argument || spec->kind == KIND_TEXT || spec->kind == KIND_PERCENT)
+	if (!spec->argument || spec->kind == KIND_TEXT || spec->kind == KIND_PERCENT || spec->kind == KIND_ALGORITHMS)
 		return false;
 	const void *value = (const char *)defaults + spec->offset;
 	if (spec->kind == KIND_INT)
@@ -154,6 +176,8 @@ static struct options options_default(enum command command)
 		options.fit.n_ndf = 1;
 		options.fit.ior = 1.5;
 	}
+	if (command == COMMAND_BENCH)
+		options.fit.n_ndf = 1;
 	return options;
 }
 
@@ -213,6 +237,14 @@ static int bad_option(enum command command, int code, char **argv)
 			     shown);
 }
 
+static bool any_has_gamma(const struct fit_options *fit)
+{
+	for (int i = 0; i < fit->n_ndf; i++)
+		if (ndf_has_gamma(fit->ndf[i]))
+			return true;
+	return false;
+}
+
 /* Combinations in which some option would be ignored, or nothing could come out. */
 static int check_fit(const struct options *options)
 {
@@ -225,6 +257,16 @@ static int check_fit(const struct options *options)
 			return options_usage(options->command, "--%s means nothing with --no-specular", shape[i]);
 	if (fit->fresnel == FRESNEL_NONE && options_given(options, "ior"))
 		return options_usage(options->command, "--ior means nothing with --fresnel none");
+	if (options_given(options, "gamma") && !any_has_gamma(fit))
+		return options_usage(options->command, "--gamma means nothing for these NDFs");
+	if (options->command == COMMAND_FIT && !fit->algorithm && options_given(options, "time"))
+		return options_usage(options->command, "--time means nothing without another --algorithm than default");
+	if (fit->algorithm && options_given(options, "starts"))
+		return options_usage(options->command, "--starts means nothing with another --algorithm than default");
+	if (options->trace && !isnan(options->within))
+		return options_usage(options->command, "--trace and --within exclude each other");
+	if (options->trace && options->output && !strcmp(options->trace, options->output))
+		return options_usage(options->command, "--trace and --output name the same file");
 	if (options->resume && !options->output)
 		return options_usage(options->command, "--resume needs -o FILE");
 	if (options->resume && options->json)
@@ -261,7 +303,8 @@ int options_parse(struct options *options, enum command command, int argc, char 
 	options->fit.cancel = cancel;
 	if (!options->n_paths)
 		return options_usage(command, "expected %s, found nothing", commands[command].arguments);
-	return command == COMMAND_FIT || command == COMMAND_COMPARE ? check_fit(options) : -1;
+	return command == COMMAND_FIT || command == COMMAND_COMPARE || command == COMMAND_BENCH ? check_fit(options)
+												: -1;
 }
 
 bool options_given(const struct options *options, const char *name)

@@ -3,14 +3,15 @@
 #ifndef OPTIONS_H
 #define OPTIONS_H
 
+#include "algorithms.h"
 #include "commands.h"
-#include "fit.h"
 #include "report.h"
 
 struct options {
 	struct fit_options fit;
 	enum command command;
 	const char *output; /* NULL: standard output */
+	const char *trace;  /* a CSV of the course of each search; NULL: none */
 	bool json, quiet, resume, recursive, readable;
 	double within; /* percent; NaN: every NDF as it is */
 	/* A model, for eval and synth; its sigma, gamma and ior are those of `fit`. */
@@ -19,6 +20,9 @@ struct options {
 	int row;          /* its row, from 1; 0: the one of this material and NDF */
 	int n_phi_d;
 	double noise;
+	/* What bench runs; none: all. */
+	const struct algorithm *algorithm[ALGORITHM_COUNT];
+	int n_algorithms;
 	atomic_bool *cancel;
 	char **path; /* what is no option, in the order given */
 	int n_paths;

@@ -19,20 +19,45 @@ static enum status cannot(struct error *error, const char *what, const char *pat
 			 strerror(errnum));
 }
 
-enum status store_backup(const char *path, struct error *error)
+static bool is_regular(const char *path)
 {
 	struct stat info;
-	if (stat(path, &info) || !S_ISREG(info.st_mode))
+	return !stat(path, &info) && S_ISREG(info.st_mode);
+}
+
+enum status store_probe(const char *path, struct error *error)
+{
+	struct stat info;
+	struct atomic_file file;
+	/* Opening a pipe is seen at its other end. */
+	if (!stat(path, &info) && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))
+		return STATUS_OK;
+	const enum status status = atomic_file_open(&file, path, error);
+	if (!status)
+		atomic_file_abort(&file);
+	return status;
+}
+
+/* Gives a regular file the name with ~ behind it, in place of its own or (`both`) beside it. */
+static enum status back_up(const char *path, bool both, struct error *error)
+{
+	if (!is_regular(path))
 		return STATUS_OK;
 	const size_t size = strlen(path) + sizeof "~";
 	char *backup = malloc(size);
 	if (!backup)
 		return cannot(error, "write", path, ENOMEM);
 	snprintf(backup, size, "%s~", path);
-	const bool renamed = !rename(path, backup);
-	const enum status status = renamed ? STATUS_OK : cannot(error, "write", backup, errno);
+	/* Where links are not to be had, the file is away for the moment until the new one takes its place. */
+	const bool done = (both && (!unlink(backup) || errno == ENOENT) && !link(path, backup)) || !rename(path, backup);
+	const enum status status = done ? STATUS_OK : cannot(error, "write", backup, errno);
 	free(backup);
 	return status;
+}
+
+enum status store_backup(const char *path, struct error *error)
+{
+	return back_up(path, false, error);
 }
 
 /* The line of a row, or the header line for NULL, newly allocated; NULL when out of memory. */
@@ -250,7 +275,11 @@ enum status store_rewrite(struct store *store, const struct csv_table *rows, str
 	enum status status = atomic_file_open(&file, store->path, error);
 	if (!status) {
 		report_csv(file.stream, &table);
-		status = atomic_file_commit(&file, error);
+		status = n < store->old.n_rows + rows->n_rows ? back_up(store->path, true, error) : STATUS_OK;
+		if (status)
+			atomic_file_abort(&file);
+		else
+			status = atomic_file_commit(&file, error);
 	}
 	free(merged);
 	return status;

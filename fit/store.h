@@ -32,10 +32,13 @@ void store_drop_stale(struct store *store, const struct result_source *source);
  * left. */
 MUST_CHECK enum status store_append(struct store *store, const struct csv_table *rows, struct error *error);
 /* store_rewrite - writes old and new rows anew, in order of material and ndf, beside the table, and puts that in its
- * place. */
+ * place. If old rows are left out, the table as it was is kept as `path` with ~ behind it. */
 MUST_CHECK enum status store_rewrite(struct store *store, const struct csv_table *rows, struct error *error);
 /* store_close - releases everything; harmless on a zeroed struct. */
 void store_close(struct store *store);
+
+/* store_probe - fails if `path` could not be written, so that hours of work do not end on that. Changes nothing. */
+MUST_CHECK enum status store_probe(const char *path, struct error *error);
 
 /* store_backup - renames a regular file out of the way, to `path` with ~ behind it. Nothing there: STATUS_OK. */
 MUST_CHECK enum status store_backup(const char *path, struct error *error);

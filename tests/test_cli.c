@@ -276,6 +276,7 @@ static void wrong_usage(void **state)
 		{"a.binary --no-diffuse --no-specular", "leave nothing to fit"},
 		{"a.binary --no-specular --sigma 0.1", "--sigma means nothing"},
 		{"a.binary --fresnel none --ior 1.5", "--ior means nothing"},
+		{"a.binary --ndf ggx,beckmann --gamma 3", "--gamma means nothing"},
 		{"a.binary --resume", "--resume needs -o"},
 		{"a.binary --resume --json -o x.json", "--resume needs a CSV"},
 		{"compare a.binary --resume", "'--resume'"},
@@ -361,6 +362,8 @@ static void bad_files(void **state)
 	expect_error(1, "cannot read 'good'");
 	stdfit("eval good --kd 1");
 	expect_error(1, "cannot read 'good'");
+	stdfit("eval bad/zero.binary --kd 1");
+	expect_error(1, "cannot compare with 'bad/zero.binary'");
 	shell("mkdir empty; exec \"$STDFIT\" empty");
 	expect_error(1, "cannot read 'empty'");
 	stdfit("\"$(printf 'two\\nlines')\" --ndf ggx");
@@ -603,6 +606,10 @@ static void resume_redoes_what_differs(void **state)
 	for (size_t i = 0; i < 6; i++)
 		expect_part(new.row[i][RESULT_OPTIONS], "gray=yes", __LINE__);
 	csv_table_free(&new);
+	/* What was replaced is not lost. */
+	old = read_table("again.csv~");
+	assert_int_equal(old.n_rows, 12);
+	csv_table_free(&old);
 	/* Another file than a result table stays as it is. */
 	shell("echo 'dear diary' >diary.csv");
 	stdfit("again " CHEAP " --resume -o diary.csv");
@@ -669,8 +676,14 @@ static void outputs_that_cannot_be_written(void **state)
 	csv_table_free(&table);
 	stdfit("synth /nowhere/x.binary --kd 1");
 	expect_error(1, "cannot write '/nowhere/x.binary'");
-	stdfit("compare a.binary " CHEAP " -o /nowhere/x.csv");
+	/* Told before anything is fitted: not a word on the input. */
+	stdfit("compare missing.binary " CHEAP " -o /nowhere/x.csv");
 	expect_error(1, "cannot write '/nowhere/x.csv'");
+	stdfit("missing.binary " CHEAP " --json -o /nowhere/x.json");
+	expect_error(1, "cannot write '/nowhere/x.json'");
+	shell("ulimit -f 1; exec \"$STDFIT\" synth limit.binary --kd 1");
+	expect_error(1, "cannot write 'limit.binary': File too large");
+	assert_int_equal(access("limit.binary", F_OK), -1);
 }
 
 static void a_reader_that_is_gone(void **state)
@@ -728,6 +741,11 @@ static void compare_tables(void **state)
 	expect_error(2, "--threads means nothing");
 	stdfit("compare a.binary four.csv");
 	expect_error(2, "expected one table");
+	/* An older output moves out of the way, were it the input. */
+	shell("cp four.csv five.csv; cp four.csv kept.csv; exec \"$STDFIT\" compare five.csv -o five.csv");
+	expect_code(0);
+	shell("cmp five.csv~ kept.csv");
+	expect_code(0);
 	write_text("mixed-options.csv", "material,ndf,error,options\na,std,0.1,weight=none\na,ggx,0.2,weight=cosine\n");
 	stdfit("compare mixed-options.csv");
 	expect_error(1, "row 2: made with other options");
