@@ -129,6 +129,7 @@ static enum status result_of(const struct job *job, const struct ndf_class *clas
 	r->starts_agreeing = found->starts_agreeing;
 	r->at_bound = bounds_of(r, o);
 	r->evaluations = found->evaluations;
+	r->passes = found->passes;
 	return STATUS_OK;
 }
 

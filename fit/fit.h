@@ -109,6 +109,7 @@ struct fit_result {
 	int starts, starts_agreeing; /* local searches run; those that ended within 0.1 % of the best */
 	unsigned at_bound;           /* enum fit_bound */
 	long evaluations;            /* shapes evaluated, on thinned and full tables together */
+	long passes;                 /* over the full table, those of kd and ks included */
 	double seconds;
 };
 

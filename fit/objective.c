@@ -110,6 +110,7 @@ static void pass(struct objective *o, const struct look *look, bool lobe, struct
 	enum { CHUNK = 16 };
 	const int n_blocks = o->table->n_blocks;
 
+	o->passes++;
 	if (o->threads > 1) {
 #pragma omp taskloop grainsize(1) default(shared)
 		for (int from = 0; from < n_blocks; from += CHUNK)

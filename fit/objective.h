@@ -34,6 +34,7 @@ struct objective {
 	double D[SAMPLES_THETA_H];
 	float row[TABLE_ROWS];
 	struct shape tabulated;           /* sigma and gamma that masking and D stand for */
+	long passes;                      /* over the table, so far */
 	struct linear start;              /* where the next inner solve begins: the last one's end */
 };
 

@@ -469,6 +469,7 @@ static enum status finish_alone(struct search *s, struct place *place, int count
 	begin_stage(s, stages[SEARCH_LEVELS - 1].name);
 	for (int n = 0; n < count && status == STATUS_OK && s->dims > 0; n++)
 		status = refine(s, &o, &stages[SEARCH_LEVELS - 1], &place[n], &found->limited);
+	found->passes = o.passes;
 	objective_free(&o);
 	qsort(place, (size_t)count, sizeof *place, by_error);
 	if (status == STATUS_OK)
@@ -478,6 +479,7 @@ static enum status finish_alone(struct search *s, struct place *place, int count
 	found->shape = shape_at(s, place[0].x);
 	objective_eval(&o, &found->shape, 1e-7, true, &found->linear);
 	note(s, &found->shape, found->linear.error);
+	found->passes += o.passes;
 	objective_free(&o);
 	return STATUS_OK;
 }
