@@ -149,14 +149,13 @@ struct nested {
 	struct fit_result result[NESTED];
 };
 
-static enum status fit_alone(const struct job *job, const struct ndf_class *class, const struct shape given[],
-			     int n_given, struct fit_result *r)
+static enum status fit_alone(const struct job *job, const struct ndf_class *class, struct fit_result *r)
 {
 	const double begin = search_clock();
 	struct found found;
 	enum status status = job->options->algorithm
 				     ? algorithm_run(&job->levels.table[SEARCH_LEVELS - 1], job->options, class, &found)
-				     : search_run(&job->levels, job->options, class, given, n_given, &found);
+				     : search_run(&job->levels, job->options, class, &found);
 
 	if (status == STATUS_OK)
 		status = result_of(job, class, &found, r);
@@ -169,7 +168,7 @@ static enum status fit_nested(const struct job *job, struct nested *nested, int 
 	if (nested->done[which])
 		return STATUS_OK;
 	nested->done[which] = true;
-	return fit_alone(job, ndf_find(nested_name[which]), NULL, 0, &nested->result[which]);
+	return fit_alone(job, ndf_find(nested_name[which]), &nested->result[which]);
 }
 
 /* Both at once where there are threads for it: two fits on a thread each wait less for one another than two threads
@@ -196,16 +195,16 @@ static enum status fit_all_nested(const struct job *job, struct nested *nested)
 static enum status take_nested(const struct job *job, struct fit_result *r, const struct ndf_class *class,
 			       const struct fit_result *from, double gamma)
 {
-	enum status status;
-
 	struct fit_result taken = *from;
 	const double sigma = from->model.ndf.sigma_x;
+	enum status status;
 
 	if (from->error >= r->error)
 		return STATUS_OK;
 	taken.starts = r->starts;
 	taken.starts_agreeing = r->starts_agreeing;
 	taken.evaluations = r->evaluations;
+	taken.passes = r->passes;
 	taken.seconds = r->seconds;
 	*r = taken;
 	status = ndf_init(&r->model.ndf, class, sigma, sigma, gamma);
@@ -213,19 +212,52 @@ static enum status take_nested(const struct job *job, struct fit_result *r, cons
 	return status;
 }
 
-static enum status fit_with_nested(const struct job *job, const struct ndf_class *class, struct nested *nested,
-				   struct fit_result *r)
+/* Goes down from the nested optima too. */
+static enum status start_from_nested(const struct job *job, const struct ndf_class *class, const struct nested *nested,
+				     struct fit_result *r)
 {
+	const double begin = search_clock();
 	struct shape given[NESTED];
-	enum status status = fit_all_nested(job, nested);
+	struct fit_result other;
+	struct found found;
+	enum status status;
 
-	for (int n = 0; n < NESTED && status == STATUS_OK; n++) {
+	for (int n = 0; n < NESTED; n++) {
 		const struct cook_torrance *m = &nested->result[n].model;
 
 		given[n] = (struct shape){m->ndf.sigma_x, nested_gamma[n], m->n, m->k};
 	}
+	status = search_from(&job->levels, job->options, class, given, NESTED, r->error, &found);
+	if (status == STATUS_OK && found.linear.error < r->error) {
+		status = result_of(job, class, &found, &other);
+		if (status == STATUS_OK && other.error < r->error) {
+			other.starts = r->starts;
+			other.starts_agreeing = r->starts_agreeing;
+			other.evaluations = r->evaluations;
+			other.passes = r->passes;
+			other.seconds = r->seconds;
+			*r = other;
+		}
+	}
+	r->starts += found.starts;
+	r->starts_agreeing += found.starts_agreeing;
+	r->evaluations += found.evaluations;
+	r->passes += found.passes;
+	r->seconds += search_clock() - begin;
+	return status;
+}
+
+/* The rich model first, and alone on all threads: who asks for it waits least. Then the nested ones, as starts and as
+ * candidates. */
+static enum status fit_with_nested(const struct job *job, const struct ndf_class *class, struct nested *nested,
+				   struct fit_result *r)
+{
+	enum status status = fit_alone(job, class, r);
+
 	if (status == STATUS_OK)
-		status = fit_alone(job, class, given, NESTED, r);
+		status = fit_all_nested(job, nested);
+	if (status == STATUS_OK)
+		status = start_from_nested(job, class, nested, r);
 	for (int n = 0; n < NESTED && status == STATUS_OK; n++)
 		status = take_nested(job, r, class, &nested->result[n], nested_gamma[n]);
 	return status;
@@ -243,7 +275,7 @@ static enum status fit_class(const struct job *job, const struct ndf_class *clas
 			*r = nested->result[n];
 			return status;
 		}
-	return fit_alone(job, class, NULL, 0, r);
+	return fit_alone(job, class, r);
 }
 
 enum status fit_run(const struct fit_context *context, const struct samples *samples, const struct fit_options *options,

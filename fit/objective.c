@@ -112,9 +112,13 @@ static void pass(struct objective *o, const struct look *look, bool lobe, struct
 
 	o->passes++;
 	if (o->threads > 1) {
-#pragma omp taskloop grainsize(1) default(shared)
-		for (int from = 0; from < n_blocks; from += CHUNK)
-			pass_blocks(o, look, lobe, from, from + CHUNK < n_blocks ? from + CHUNK : n_blocks);
+#pragma omp taskgroup
+		for (int from = 0; from < n_blocks; from += CHUNK) {
+			const int to = from + CHUNK < n_blocks ? from + CHUNK : n_blocks;
+
+#pragma omp task firstprivate(from, to) default(shared)
+			pass_blocks(o, look, lobe, from, to);
+		}
 	} else {
 		pass_blocks(o, look, lobe, 0, n_blocks);
 	}

@@ -529,9 +529,8 @@ static int agreeing(const struct place place[], int from, int count)
 	return agree;
 }
 
-/* The places to start from: valleys of the scan, then the given shapes. Returns how many, 0 on failure. */
-static int first_places(struct search *s, const struct shape given[], int n_given, struct place place[],
-			enum status *status)
+/* The places to start from: the valleys of a scan. Returns how many, 0 on failure. */
+static int first_places(struct search *s, struct place place[], enum status *status)
 {
 	struct place *grid = calloc((size_t)grid_size(s, 0), sizeof *grid);
 	int count = 0;
@@ -544,21 +543,15 @@ static int first_places(struct search *s, const struct shape given[], int n_give
 			*status = STATUS_NO_MEMORY;
 	}
 	free(grid);
-	for (int n = 0; n < n_given && *status == STATUS_OK; n++)
-		place_of(s, &given[n], place[count++].x);
-	return count;
+	return *status == STATUS_OK ? count : 0;
 }
 
-/* Runs the stages from the first table to the full one. */
-static enum status descend(struct search *s, const struct shape given[], int n_given, struct found *found)
+/* Runs the stages on the thinned tables. Returns how many places are left for the full one, best first. */
+static int descend(struct search *s, struct place place[], int count, struct found *found, enum status *status)
 {
 	const int n_random = s->options->starts;
-	struct place *place = calloc((size_t)(MOST_STARTS + SEARCH_GIVEN + n_random), sizeof *place);
-	enum status status = STATUS_NO_MEMORY;
-	int count = place ? first_places(s, given, n_given, place, &status) : 0;
 
-	found->starts = count + n_random;
-	for (int level = 0; level < SEARCH_LEVELS - 1 && status == STATUS_OK; level++) {
+	for (int level = 0; level < SEARCH_LEVELS - 1 && *status == STATUS_OK; level++) {
 		int from = 0;
 
 		if (level > 0)
@@ -568,31 +561,62 @@ static enum status descend(struct search *s, const struct shape given[], int n_g
 			count += n_random;
 		}
 		begin_stage(s, stages[level].name);
-		status = refine_all(s, level, place, count);
+		*status = refine_all(s, level, place, count);
 		if (level <= 1)
 			found->starts_agreeing += agreeing(place, from, count);
 	}
-	if (status == STATUS_OK)
-		status = finish(s, place, thin_out(s, place, count, &stages[SEARCH_LEVELS - 1]), found);
-	free(place);
-	return status;
+	return *status == STATUS_OK ? thin_out(s, place, count, &stages[SEARCH_LEVELS - 1]) : 0;
+}
+
+static struct search new_search(const struct levels *levels, const struct fit_options *options,
+				const struct ndf_class *class)
+{
+	struct search s = {.levels = levels, .options = options, .class = class, .begin_s = search_clock()};
+
+	setup(&s);
+	return s;
 }
 
 enum status search_run(const struct levels *levels, const struct fit_options *options, const struct ndf_class *class,
-		       const struct shape given[], int n_given, struct found *found)
+		       struct found *found)
 {
-	struct search s = {.levels = levels, .options = options, .class = class, .begin_s = search_clock()};
-	struct place nowhere = {.error = 0};
-	enum status status;
+	struct search s = new_search(levels, options, class);
+	struct place *place = calloc((size_t)(MOST_STARTS + options->starts + 1), sizeof *place);
+	enum status status = place ? STATUS_OK : STATUS_NO_MEMORY;
+	int count = 1;
 
-	*found = (struct found){.starts = 1};
-	setup(&s);
-	if (s.dims > 0) {
-		status = descend(&s, given, n_given, found);
-	} else {
-		found->starts_agreeing = 1;
-		status = finish(&s, &nowhere, 1, found);
+	*found = (struct found){.starts = 1, .starts_agreeing = s.dims == 0};
+	if (s.dims > 0 && status == STATUS_OK) {
+		count = first_places(&s, place, &status);
+		found->starts = count + options->starts;
+		count = descend(&s, place, count, found, &status);
 	}
+	if (status == STATUS_OK)
+		status = finish(&s, place, count, found);
+	free(place);
+	found->evaluations = s.evaluations;
+	return cancelled(&s) ? STATUS_INTERRUPTED : status;
+}
+
+enum status search_from(const struct levels *levels, const struct fit_options *options, const struct ndf_class *class,
+			const struct shape given[], int n_given, double known, struct found *found)
+{
+	struct fit_options own = *options;
+	struct search s;
+	struct place place[SEARCH_GIVEN];
+	enum status status = STATUS_OK;
+
+	own.starts = 0;
+	s = new_search(levels, &own, class);
+	*found = (struct found){.starts = n_given, .linear.error = INFINITY};
+	for (int n = 0; n < n_given; n++)
+		place_of(&s, &given[n], place[n].x);
+	const int count = descend(&s, place, n_given, found, &status);
+
+	found->starts_agreeing = count > 0 && place[0].error <= 1.001 * known ? found->starts_agreeing : 0;
+	/* The largest sample tells E to some 0.003 %. */
+	if (count > 0 && place[0].error <= 1.0002 * known)
+		status = finish(&s, place, count, found);
 	found->evaluations = s.evaluations;
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }

@@ -35,11 +35,16 @@ int search_bounds(const struct fit_options *options, const struct ndf_class *cla
 /* search_shape - the shape at a point in these coordinates; fixed parameters as the options have them. */
 struct shape search_shape(const struct fit_options *options, const struct ndf_class *class, const double x[]);
 
-/* search_run - minimises E over the free parameters among sigma, gamma, ior and k.
- * Given:   the shapes of simpler models that should start a local search too (n_given of them)
+/* search_run - minimises E over the free parameters among sigma, gamma, ior and k, wherever its minimum is.
  * Errors:  STATUS_NO_MEMORY, STATUS_INTERRUPTED */
 MUST_CHECK enum status search_run(const struct levels *levels, const struct fit_options *options,
-				  const struct ndf_class *class, const struct shape given[], int n_given,
-				  struct found *found);
+				  const struct ndf_class *class, struct found *found);
+
+/* search_from - goes down from the given shapes only (at most SEARCH_GIVEN), against an error that is known already:
+ * where the samples show that it will not be beaten, the full table is left alone and found->linear.error is INFINITY.
+ * Errors:  as search_run() */
+MUST_CHECK enum status search_from(const struct levels *levels, const struct fit_options *options,
+				   const struct ndf_class *class, const struct shape given[], int n_given, double known,
+				   struct found *found);
 
 #endif
