@@ -82,8 +82,10 @@ static unsigned bounds_of(const struct fit_result *r, const struct fit_options *
 	if (o->specular) {
 		if (isnan(o->sigma) && on_bound(m->ndf.sigma_x, FIT_SIGMA_MIN, FIT_SIGMA_MAX))
 			bits |= BOUND_SIGMA;
-		if (ndf_has_gamma(m->ndf.class) && isnan(o->gamma) &&
-		    on_bound(m->ndf.gamma - 1.5, FIT_GAMMA_MIN - 1.5, FIT_GAMMA_MAX - 1.5))
+		const struct ndf_param *gamma = ndf_has_gamma(m->ndf.class) ? ndf_param_at(m->ndf.class, 1) : NULL;
+
+		if (gamma && isnan(o->gamma) &&
+		    on_bound(m->ndf.gamma - gamma->min, gamma->search_min - gamma->min, gamma->search_max - gamma->min))
 			bits |= BOUND_GAMMA;
 		if (o->fresnel != FRESNEL_NONE && isnan(o->ior) && on_bound(m->n - 1, FIT_IOR_MIN - 1, FIT_IOR_MAX - 1))
 			bits |= BOUND_IOR;
@@ -108,7 +110,7 @@ static enum status result_of(const struct job *job, const struct ndf_class *clas
 	enum status status;
 
 	*r = (struct fit_result){.diffuse = o->diffuse, .specular = o->specular};
-	status = ndf_init(&m->ndf, class, found->shape.sigma, found->shape.sigma, found->shape.gamma);
+	status = shape_ndf(&found->shape, class, o->lambda, &m->ndf);
 	if (status != STATUS_OK)
 		return status;
 	m->gaf = o->gaf;
@@ -133,15 +135,25 @@ static enum status result_of(const struct job *job, const struct ndf_class *clas
 	return STATUS_OK;
 }
 
-/* Nested distributions: whoever has a free gamma holds GGX and Beckmann within. The other algorithms go without. */
-static bool has_nested(const struct job *job, const struct ndf_class *class)
-{
-	return ndf_has_gamma(class) && isnan(job->options->gamma) && job->options->specular && !job->options->algorithm;
-}
-
-static const char *const nested_name[] = {"ggx", "beckmann"};
-static const double nested_gamma[] = {2, INFINITY};
+/* Nested distributions: at these values of gamma a class is a simpler one, of the same sigma. */
 enum { NESTED = 2 };
+static const char *const nested_name[NESTED] = {"ggx", "beckmann"};
+static const struct nesting {
+	const char *class;
+	double gamma[NESTED]; /* NaN: not within the class */
+} nestings[] = {{"std", {2, INFINITY}}, {"hyper-cauchy", {2, NAN}}, {"gtr", {2, NAN}}};
+
+/* The other algorithms go without. So do the other forms of Lambda: GGX and Beckmann have theirs. */
+static const struct nesting *nesting_of(const struct job *job, const struct ndf_class *class)
+{
+	const struct fit_options *o = job->options;
+
+	for (size_t n = 0; n < sizeof nestings / sizeof *nestings; n++)
+		if (class == ndf_find(nestings[n].class) && isnan(o->gamma) && o->specular && !o->algorithm &&
+		    o->lambda == LAMBDA_EXACT)
+			return &nestings[n];
+	return NULL;
+}
 
 /* Fits of the nested models, made when first wanted and shared by all that want them. */
 struct nested {
@@ -171,20 +183,21 @@ static enum status fit_nested(const struct job *job, struct nested *nested, int 
 	return fit_alone(job, ndf_find(nested_name[which]), &nested->result[which]);
 }
 
-/* Both at once where there are threads for it: two fits on a thread each wait less for one another than two threads
- * within one. */
-static enum status fit_all_nested(const struct job *job, struct nested *nested)
+/* Those within a class, at once where there are threads for it: two fits on a thread each wait less for one another
+ * than two threads within one. */
+static enum status fit_all_nested(const struct job *job, const struct nesting *nesting, struct nested *nested)
 {
 	const int outer = job->options->threads < NESTED ? job->options->threads : NESTED;
 	struct fit_options options = *job->options;
 	struct job own = *job;
-	enum status status[NESTED];
+	enum status status[NESTED] = {STATUS_OK, STATUS_OK};
 
 	options.threads /= outer;
 	own.options = &options;
 #pragma omp parallel for num_threads(outer) schedule(static) if (outer > 1)
 	for (int n = 0; n < NESTED; n++)
-		status[n] = fit_nested(&own, nested, n);
+		if (!isnan(nesting->gamma[n]))
+			status[n] = fit_nested(&own, nested, n);
 	for (int n = 0; n < NESTED; n++)
 		if (status[n] != STATUS_OK)
 			return status[n];
@@ -213,21 +226,23 @@ static enum status take_nested(const struct job *job, struct fit_result *r, cons
 }
 
 /* Goes down from the nested optima too. */
-static enum status start_from_nested(const struct job *job, const struct ndf_class *class, const struct nested *nested,
-				     struct fit_result *r)
+static enum status start_from_nested(const struct job *job, const struct ndf_class *class,
+				     const struct nesting *nesting, const struct nested *nested, struct fit_result *r)
 {
 	const double begin = search_clock();
 	struct shape given[NESTED];
 	struct fit_result other;
 	struct found found;
 	enum status status;
+	int count = 0;
 
 	for (int n = 0; n < NESTED; n++) {
 		const struct cook_torrance *m = &nested->result[n].model;
 
-		given[n] = (struct shape){m->ndf.sigma_x, nested_gamma[n], m->n, m->k};
+		if (!isnan(nesting->gamma[n]))
+			given[count++] = (struct shape){m->ndf.sigma_x, nesting->gamma[n], m->n, m->k};
 	}
-	status = search_from(&job->levels, job->options, class, given, NESTED, r->error, &found);
+	status = search_from(&job->levels, job->options, class, given, count, r->error, &found);
 	if (status == STATUS_OK && found.linear.error < r->error) {
 		status = result_of(job, class, &found, &other);
 		if (status == STATUS_OK && other.error < r->error) {
@@ -249,25 +264,66 @@ static enum status start_from_nested(const struct job *job, const struct ndf_cla
 
 /* The rich model first, and alone on all threads: who asks for it waits least. Then the nested ones, as starts and as
  * candidates. */
-static enum status fit_with_nested(const struct job *job, const struct ndf_class *class, struct nested *nested,
-				   struct fit_result *r)
+static enum status fit_with_nested(const struct job *job, const struct ndf_class *class, const struct nesting *nesting,
+				   struct nested *nested, struct fit_result *r)
 {
 	enum status status = fit_alone(job, class, r);
 
 	if (status == STATUS_OK)
-		status = fit_all_nested(job, nested);
+		status = fit_all_nested(job, nesting, nested);
 	if (status == STATUS_OK)
-		status = start_from_nested(job, class, nested, r);
+		status = start_from_nested(job, class, nesting, nested, r);
 	for (int n = 0; n < NESTED && status == STATUS_OK; n++)
-		status = take_nested(job, r, class, &nested->result[n], nested_gamma[n]);
+		if (!isnan(nesting->gamma[n]))
+			status = take_nested(job, r, class, &nested->result[n], nesting->gamma[n]);
 	return status;
+}
+
+/* A form of Lambda that exists at some gammas only: each of them is fitted, and the best taken. */
+static enum status fit_each_gamma(const struct job *job, const struct ndf_class *class, struct fit_result *r)
+{
+	struct fit_options options = *job->options;
+	struct job own = *job;
+	enum status status = STATUS_OK;
+	struct fit_result one;
+	long evaluations = 0, passes = 0;
+	double seconds = 0;
+
+	own.options = &options;
+	*r = (struct fit_result){.error = INFINITY};
+	for (options.gamma = 1.5; options.gamma <= 16 && status == STATUS_OK; options.gamma += 0.5) {
+		if (!lambda_form_takes(options.lambda, options.gamma))
+			continue;
+		status = fit_alone(&own, class, &one);
+		evaluations += one.evaluations;
+		passes += one.passes;
+		seconds += one.seconds;
+		if (status == STATUS_OK && one.error < r->error)
+			*r = one;
+	}
+	r->evaluations = evaluations;
+	r->passes = passes;
+	r->seconds = seconds;
+	return status;
+}
+
+static bool has_sparse_lambda(const struct job *job, const struct ndf_class *class)
+{
+	const struct fit_options *o = job->options;
+
+	return (o->lambda == LAMBDA_INTEGER || o->lambda == LAMBDA_HALF_INTEGER) && o->specular && isnan(o->gamma) &&
+	       class == ndf_find("std");
 }
 
 static enum status fit_class(const struct job *job, const struct ndf_class *class, struct nested *nested,
 			     struct fit_result *r)
 {
-	if (has_nested(job, class))
-		return fit_with_nested(job, class, nested, r);
+	const struct nesting *nesting = nesting_of(job, class);
+
+	if (nesting)
+		return fit_with_nested(job, class, nesting, nested, r);
+	if (has_sparse_lambda(job, class))
+		return fit_each_gamma(job, class, r);
 	for (int n = 0; n < NESTED; n++)
 		if (class == ndf_find(nested_name[n])) {
 			const enum status status = fit_nested(job, nested, n);

@@ -48,6 +48,7 @@ struct fit_options {
 	int n_ndf;
 	enum gaf gaf;
 	enum fresnel fresnel;
+	enum lambda_form lambda; /* of STD and its family; the other NDFs have their exact form only */
 	enum weight weight;
 	enum bins bins;
 	double max_theta;      /* degrees; entries with theta_i or theta_o above it are dropped; 90 = none */

@@ -34,6 +34,16 @@ void objective_free(struct objective *o)
 	o->sums = NULL;
 }
 
+enum status shape_ndf(const struct shape *shape, const struct ndf_class *class, enum lambda_form lambda,
+		      struct ndf *ndf)
+{
+	enum status status = ndf_init(ndf, class, shape->sigma, shape->sigma, shape->gamma);
+
+	if (status == STATUS_OK && lambda != LAMBDA_EXACT)
+		status = ndf_set_lambda_form(ndf, lambda);
+	return status == STATUS_UNSUPPORTED ? STATUS_OK : status;
+}
+
 static enum status tabulate(struct objective *o, const struct shape *shape)
 {
 	const struct geometry *g = o->table->geometry;
@@ -41,7 +51,7 @@ static enum status tabulate(struct objective *o, const struct shape *shape)
 
 	if (shape->sigma == o->tabulated.sigma && shape->gamma == o->tabulated.gamma)
 		return STATUS_OK;
-	const enum status status = ndf_init(&ndf, o->class, shape->sigma, shape->sigma, shape->gamma);
+	const enum status status = shape_ndf(shape, o->class, o->options->lambda, &ndf);
 
 	if (status != STATUS_OK)
 		return status;

@@ -12,6 +12,11 @@ struct shape {
 	double sigma, gamma, ior, k;
 };
 
+/* shape_ndf - the distribution of a shape, with Lambda in the given form where the class has it, else exact.
+ * Returns STATUS_DOMAIN where the class does not take the shape, or the form not its gamma. */
+MUST_CHECK enum status shape_ndf(const struct shape *shape, const struct ndf_class *class, enum lambda_form lambda,
+				 struct ndf *ndf);
+
 /* struct linear - the parameters in which it is, and how good they are. */
 struct linear {
 	double kd[SAMPLES_CHANNELS], ks[SAMPLES_CHANNELS];

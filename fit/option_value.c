@@ -39,6 +39,8 @@ const struct option_spec option_specs[] = {
 	{"ndf", 0, KIND_NDFS, FITS, RECORDED_WITHIN, "LIST", "NDFs to fit, separated by commas", AT(fit.ndf), 0, 0},
 	{"ndf", 0, KIND_NDFS, MODEL | BENCH, NOT_RECORDED, "NAME", "NDF of the model", AT(fit.ndf), 0, 0},
 	{"gaf", 0, KIND_GAF, SEARCHES | MODEL, RECORDED, "NAME", "masking and shadowing G", AT(fit.gaf), 0, 0},
+	{"lambda", 0, KIND_LAMBDA, SEARCHES | MODEL, RECORDED, "FORM",
+	 "form of Lambda of STD and its family; other NDFs have the exact one only", AT(fit.lambda), 0, 0},
 	{"fresnel", 0, KIND_FRESNEL, SEARCHES | MODEL, RECORDED, "NAME", "Fresnel term F", AT(fit.fresnel), 0, 0},
 	{"weight", 0, KIND_WEIGHT, SEARCHES, RECORDED, "NAME", "how an entry counts in the error", AT(fit.weight), 0,
 	 0},
@@ -52,8 +54,8 @@ const struct option_spec option_specs[] = {
 	{"gray", 0, KIND_ON, SEARCHES, RECORDED, NULL, "one kd and one ks for the three channels", AT(fit.gray), 0, 0},
 	{"ior", 0, KIND_NUMBER, SEARCHES, RECORDED, "N", "fix the index of refraction", AT(fit.ior), FIT_IOR_MIN,
 	 FIT_IOR_MAX},
-	{"gamma", 0, KIND_GAMMA, SEARCHES, RECORDED, "G", "fix STD's gamma (inf is Beckmann)", AT(fit.gamma),
-	 FIT_GAMMA_MIN, FIT_GAMMA_MAX},
+	{"gamma", 0, KIND_GAMMA, SEARCHES, RECORDED, "G", "fix the shape gamma (STD: above 1.5; inf is Beckmann)",
+	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
 	{"sigma", 0, KIND_NUMBER, SEARCHES, RECORDED, "S", "fix the roughness", AT(fit.sigma), FIT_SIGMA_MIN,
 	 FIT_SIGMA_MAX},
 	{"algorithm", 0, KIND_ALGORITHM, FIT, RECORDED_ALGORITHM, "NAME",
@@ -79,8 +81,8 @@ const struct option_spec option_specs[] = {
 	{"within", 0, KIND_PERCENT, FIT, RECORDED_WITHIN, "P%",
 	 "per material only the simplest model whose error is within P% of the best", AT(within), 0, 1000},
 	{"sigma", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "S", "roughness", AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
-	{"gamma", 0, KIND_GAMMA, MODEL, NOT_RECORDED, "G", "STD's gamma (inf is Beckmann)", AT(fit.gamma),
-	 FIT_GAMMA_MIN, FIT_GAMMA_MAX},
+	{"gamma", 0, KIND_GAMMA, MODEL, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann)", AT(fit.gamma),
+	 1e-3, FIT_GAMMA_MAX},
 	{"ior", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "N", "index of refraction", AT(fit.ior), FIT_IOR_MIN, FIT_IOR_MAX},
 	{"k", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "K", "imaginary part of a conductor's index", AT(k), 0, FIT_K_MAX},
 	{"kd", 0, KIND_RGB, MODEL, NOT_RECORDED, "R,G,B", "diffuse factors", AT(kd), 0, 1e6},
@@ -104,6 +106,8 @@ const char *option_choice(enum option_kind kind, int i)
 		return ndf_at(i) ? ndf_name(ndf_at(i)) : NULL;
 	case KIND_GAF:
 		return i < GAF_COUNT ? gaf_name((enum gaf)i) : NULL;
+	case KIND_LAMBDA:
+		return i < LAMBDA_FORM_COUNT ? lambda_form_name((enum lambda_form)i) : NULL;
 	case KIND_FRESNEL:
 		return i < FRESNEL_COUNT ? fresnel_name((enum fresnel)i) : NULL;
 	case KIND_WEIGHT:
@@ -123,6 +127,8 @@ static enum status choice_find(enum option_kind kind, const char *text, void *va
 	switch (kind) {
 	case KIND_GAF:
 		return gaf_find(text, value);
+	case KIND_LAMBDA:
+		return lambda_form_find(text, value);
 	case KIND_FRESNEL:
 		return fresnel_find(text, value);
 	case KIND_WEIGHT:
@@ -351,6 +357,9 @@ void option_write(FILE *file, const struct options *options, const struct option
 		break;
 	case KIND_GAF:
 		fputs(gaf_name(*(const enum gaf *)value), file);
+		break;
+	case KIND_LAMBDA:
+		fputs(lambda_form_name(*(const enum lambda_form *)value), file);
 		break;
 	case KIND_FRESNEL:
 		fputs(fresnel_name(*(const enum fresnel *)value), file);

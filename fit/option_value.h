@@ -20,6 +20,7 @@ enum option_kind {
 	KIND_PHI,     /* int, 180 or 360 */
 	KIND_NDFS,
 	KIND_GAF,
+	KIND_LAMBDA,
 	KIND_FRESNEL,
 	KIND_WEIGHT,
 	KIND_BINS,

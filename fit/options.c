@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "options.h"
+#include "objective.h"
 #include "option_value.h"
 #include "report.h"
 #include "text_quote.h"
@@ -245,6 +246,19 @@ static bool any_has_gamma(const struct fit_options *fit)
 	return false;
 }
 
+/* The first NDF, if any, that does not take the fixed gamma, exactly or in the chosen form of Lambda. */
+static const struct ndf_class *refuses_gamma(const struct fit_options *fit)
+{
+	for (int i = 0; i < fit->n_ndf; i++) {
+		const struct shape shape = {.sigma = 0.1, .gamma = fit->gamma};
+		struct ndf ndf;
+		if (ndf_has_gamma(fit->ndf[i]) && !isnan(fit->gamma) &&
+		    shape_ndf(&shape, fit->ndf[i], fit->lambda, &ndf) != STATUS_OK)
+			return fit->ndf[i];
+	}
+	return NULL;
+}
+
 /* Combinations in which some option would be ignored, or nothing could come out. */
 static int check_fit(const struct options *options)
 {
@@ -259,6 +273,10 @@ static int check_fit(const struct options *options)
 		return options_usage(options->command, "--ior means nothing with --fresnel none");
 	if (options_given(options, "gamma") && !any_has_gamma(fit))
 		return options_usage(options->command, "--gamma means nothing for these NDFs");
+	const struct ndf_class *refusing = refuses_gamma(fit);
+	if (refusing)
+		return options_usage(options->command, "invalid value %g for --gamma: %s with --lambda %s does not take it", fit->gamma,
+				     ndf_name(refusing), lambda_form_name(fit->lambda));
 	if (options->command == COMMAND_FIT && !fit->algorithm && options_given(options, "time"))
 		return options_usage(options->command, "--time means nothing without another --algorithm than default");
 	if (fit->algorithm && options_given(options, "starts"))
@@ -362,7 +380,8 @@ int options_model(const struct options *options, struct cook_torrance *model)
 	memcpy(model->kd, options->kd, sizeof model->kd);
 	memcpy(model->ks, options->ks, sizeof model->ks);
 	const double sigma = isnan(fit->sigma) ? 1 : fit->sigma, gamma = isnan(fit->gamma) ? 2 : fit->gamma;
-	if (ndf_init(&model->ndf, fit->ndf[0], sigma, sigma, gamma))
+	const struct shape shape = {.sigma = sigma, .gamma = gamma};
+	if (shape_ndf(&shape, fit->ndf[0], fit->lambda, &model->ndf))
 		return options_usage(options->command, "--ndf %s does not allow these parameters",
 				     ndf_name(fit->ndf[0]));
 	return -1;

@@ -84,7 +84,7 @@ static struct row *row_new(const struct result_source *source, const struct fit_
 	row->cell[RESULT_NDF] = ndf_name(ndf);
 	row->cell[RESULT_GAF] = gaf_name(options->gaf);
 	row->cell[RESULT_FRESNEL] = fresnel_name(options->fresnel);
-	row->cell[RESULT_LAMBDA] = "exact";
+	row->cell[RESULT_LAMBDA] = lambda_form_name(options->lambda);
 	row->cell[RESULT_WEIGHT] = weight_name(options->weight);
 	row->cell[RESULT_BINS] = bins_name(options->bins);
 	set_number(row, RESULT_MAX_THETA, options->max_theta);
@@ -110,7 +110,33 @@ static enum status row_finish(struct row *row, struct csv_table *table, const ch
 	return status;
 }
 
-static void set_model(struct row *row, const struct fit_result *result, char params[64])
+enum { PARAMS_SIZE = 256 };
+
+/* Adds name=value to the text of the column params. */
+static void add_param(char params[PARAMS_SIZE], const char *name, double value)
+{
+	char number[CSV_NUMBER_SIZE];
+	const size_t used = strlen(params);
+	snprintf(params + used, PARAMS_SIZE - used, "%s%s=%s", used ? ";" : "", name, csv_number(number, value));
+}
+
+/* sigma and gamma have columns; what else a distribution has goes to params. */
+static void set_ndf(struct row *row, const struct ndf *ndf, char params[PARAMS_SIZE])
+{
+	for (int i = 0; ndf_param_at(ndf->class, i); i++) {
+		const char *name = ndf_param_at(ndf->class, i)->name;
+		if (!strcmp(name, "sigma"))
+			set_number(row, RESULT_SIGMA, ndf->param[i]);
+		else if (!strcmp(name, "gamma"))
+			set_number(row, RESULT_GAMMA, ndf->param[i]);
+		else
+			add_param(params, name, ndf->param[i]);
+	}
+	if (!ndf_has_gamma(ndf->class))
+		set_number(row, RESULT_GAMMA, ndf->gamma);
+}
+
+static void set_model(struct row *row, const struct fit_result *result, char params[PARAMS_SIZE])
 {
 	const struct cook_torrance *model = &result->model;
 	for (int c = 0; c < 3 && result->diffuse; c++)
@@ -119,15 +145,13 @@ static void set_model(struct row *row, const struct fit_result *result, char par
 		return;
 	for (int c = 0; c < 3; c++)
 		set_number(row, RESULT_KS_R + (enum result_column)c, model->ks[c]);
-	set_number(row, RESULT_SIGMA, model->ndf.sigma_x);
-	set_number(row, RESULT_GAMMA, model->ndf.gamma);
+	set_ndf(row, &model->ndf, params);
 	if (model->fresnel != FRESNEL_NONE)
 		set_number(row, RESULT_IOR, model->n);
-	if (model->fresnel == FRESNEL_CONDUCTOR) {
-		char k[CSV_NUMBER_SIZE];
-		snprintf(params, 64, "k=%s", csv_number(k, model->k));
-		row->cell[RESULT_PARAMS] = params;
-	}
+	if (model->fresnel == FRESNEL_CONDUCTOR)
+		add_param(params, "k", model->k);
+	row->cell[RESULT_PARAMS] = params;
+	row->cell[RESULT_LAMBDA] = lambda_form_name(model->ndf.lambda_form);
 }
 
 static void set_metrics(struct row *row, const struct fit_metrics *metrics)
@@ -162,7 +186,7 @@ static const char *bounds_text(char text[BOUNDS_SIZE], unsigned at_bound)
 enum status result_add(struct csv_table *table, const struct result_source *source, const struct fit_options *options,
 		       const struct fit_result *result)
 {
-	char params[64], bounds[BOUNDS_SIZE];
+	char params[PARAMS_SIZE] = "", bounds[BOUNDS_SIZE];
 	struct row *row =
 		row_new(source, options, result->model.ndf.class, result->end == FIT_CONVERGED ? "converged" : "limit");
 	if (!row)
@@ -222,6 +246,55 @@ static bool is_factor(char *const *row, enum result_column column)
 	return x >= 0 && !isinf(x);
 }
 
+/* The value of a parameter in the column params; false when it is not there or no number. */
+static bool find_param(const char *params, const char *name, double *value)
+{
+	const size_t length = strlen(name);
+	for (const char *at = params; at; at = strchr(at, ';')) {
+		at += *at == ';';
+		if (!strncmp(at, name, length) && at[length] == '=') {
+			char text[CSV_NUMBER_SIZE];
+			snprintf(text, sizeof text, "%.*s", (int)strcspn(at + length + 1, ";"), at + length + 1);
+			return csv_parse_number(text, value);
+		}
+	}
+	return false;
+}
+
+/* The distribution of a row, from its columns and params; names the column to blame. */
+static enum status result_ndf(char *const *row, const struct ndf_class *class, struct ndf *ndf,
+			      enum result_column *wrong)
+{
+	double value[NDF_PARAMS_MAX];
+	enum lambda_form form;
+	*wrong = RESULT_SIGMA;
+	for (int i = 0; ndf_param_at(class, i); i++) {
+		const char *name = ndf_param_at(class, i)->name;
+		if (!strcmp(name, "sigma")) {
+			value[i] = number_or(row, RESULT_SIGMA, 1);
+		} else if (!strcmp(name, "gamma")) {
+			*wrong = RESULT_GAMMA;
+			value[i] = number_or(row, RESULT_GAMMA, 2.5);
+		} else {
+			*wrong = RESULT_PARAMS;
+			/* Without a specular term there are none. */
+			if (!find_param(row[RESULT_PARAMS], name, &value[i])) {
+				if (*row[RESULT_KS_R])
+					return STATUS_DOMAIN;
+				value[i] = 1;
+			}
+		}
+	}
+	if (*row[RESULT_SIGMA] && !(number_or(row, RESULT_SIGMA, 1) > 0))
+		*wrong = RESULT_SIGMA;
+	if (ndf_init_params(ndf, class, value))
+		return STATUS_DOMAIN;
+	*wrong = RESULT_LAMBDA;
+	if (lambda_form_find(row[RESULT_LAMBDA], &form))
+		return STATUS_DOMAIN;
+	return form == LAMBDA_EXACT ? STATUS_OK : ndf_set_lambda_form(ndf, form);
+}
+
 enum status result_model(char *const *row, struct cook_torrance *model, struct fit_options *options,
 			 struct error *error)
 {
@@ -252,15 +325,14 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 	}
 	if (!(model->n > 0 && !isinf(model->n)))
 		return bad_cell(row, RESULT_IOR, error);
-	if (options->fresnel == FRESNEL_CONDUCTOR && *row[RESULT_SIGMA] &&
-	    (strncmp(row[RESULT_PARAMS], "k=", 2) || !csv_parse_number(row[RESULT_PARAMS] + 2, &model->k) ||
-	     !(model->k >= 0)))
+	if (options->fresnel == FRESNEL_CONDUCTOR && *row[RESULT_KS_R] &&
+	    !(find_param(row[RESULT_PARAMS], "k", &model->k) && model->k >= 0))
 		return bad_cell(row, RESULT_PARAMS, error);
-	const double sigma = number_or(row, RESULT_SIGMA, 1);
 	model->gaf = options->gaf;
 	model->fresnel = options->fresnel;
-	if (ndf_init(&model->ndf, ndf, sigma, sigma, number_or(row, RESULT_GAMMA, 2)))
-		return bad_cell(row, sigma > 0 ? RESULT_GAMMA : RESULT_SIGMA, error);
+	enum result_column wrong;
+	if (result_ndf(row, ndf, &model->ndf, &wrong))
+		return bad_cell(row, wrong, error);
 	return STATUS_OK;
 }
 

@@ -29,8 +29,8 @@ void levels_free(struct levels *levels)
 		table_free(&levels->table[l]);
 }
 
-/* The coordinates of the search, in which the valleys are nearly straight: ln sigma, ln(gamma - 1.5),
- * sqrt(F0) = (n - 1)/(n + 1) and k/(k + 1). */
+/* The coordinates of the search, in which the valleys are nearly straight: ln sigma, ln(gamma - the least gamma of the
+ * NDF), sqrt(F0) = (n - 1)/(n + 1) and k/(k + 1). */
 enum coordinate { SIGMA, GAMMA, IOR, K };
 
 static double *parameter(struct shape *shape, enum coordinate c)
@@ -40,13 +40,13 @@ static double *parameter(struct shape *shape, enum coordinate c)
 	return at[c];
 }
 
-static double to_coordinate(enum coordinate c, double value)
+static double to_coordinate(enum coordinate c, double least_gamma, double value)
 {
 	switch (c) {
 	case SIGMA:
 		return log(value);
 	case GAMMA:
-		return log(value - 1.5);
+		return log(value - least_gamma);
 	case IOR:
 		return (value - 1) / (value + 1);
 	default:
@@ -54,13 +54,13 @@ static double to_coordinate(enum coordinate c, double value)
 	}
 }
 
-static double from_coordinate(enum coordinate c, double x)
+static double from_coordinate(enum coordinate c, double least_gamma, double x)
 {
 	switch (c) {
 	case SIGMA:
 		return exp(x);
 	case GAMMA:
-		return 1.5 + exp(x);
+		return least_gamma + exp(x);
 	case IOR:
 		return (1 + x) / (1 - x);
 	default:
@@ -68,8 +68,13 @@ static double from_coordinate(enum coordinate c, double x)
 	}
 }
 
-static const double lowest[] = {FIT_SIGMA_MIN, FIT_GAMMA_MIN, FIT_IOR_MIN, 0};
-static const double highest[] = {FIT_SIGMA_MAX, FIT_GAMMA_MAX, FIT_IOR_MAX, FIT_K_MAX};
+enum { MOST_VALUES = 32 };
+
+/* The values of one parameter that the scan tries. */
+struct axis {
+	double value[MOST_VALUES];
+	int count;
+};
 
 struct place {
 	double x[SEARCH_DIMS];
@@ -83,6 +88,8 @@ struct search {
 	int dims;
 	enum coordinate coordinate[SEARCH_DIMS];
 	double lo[SEARCH_DIMS], hi[SEARCH_DIMS];
+	double least_gamma, lowest[SEARCH_DIMS], highest[SEARCH_DIMS]; /* of the parameters themselves */
+	struct axis axis[SEARCH_DIMS];
 	struct shape fixed; /* values of the parameters that are not searched */
 	_Atomic long evaluations;
 	double begin_s;
@@ -125,13 +132,35 @@ static bool cancelled(const struct search *s)
 	return s->options->cancel && atomic_load_explicit(s->options->cancel, memory_order_relaxed);
 }
 
-static void add_dim(struct search *s, enum coordinate c)
+/* The grid of the scan. Places in gamma are those of STD, above its least gamma; other NDFs get as many between the
+ * ends of theirs, up to 50. */
+static const struct axis scan_sigma = {{1e-4, 2e-4, 4e-4, 7e-4, 1e-3, 1.5e-3, 2.2e-3, 3.2e-3, 4.6e-3,
+					6.5e-3, 9e-3, 0.0125, 0.0175, 0.025, 0.035, 0.05, 0.07, 0.1,
+					0.14, 0.2, 0.28, 0.4, 0.55, 0.8, 1.2, 2, 4}, 27};
+static const struct axis scan_gamma = {{1e-4, 1e-3, 0.005, 0.015, 0.04, 0.1, 0.25, 0.7, 2, 6.5, 48.5}, 11};
+static const struct axis scan_ior = {{1.03, 1.15, 1.35, 1.8, 3, 8, 60}, 7};
+static const struct axis scan_k = {{0, 0.5, 2, 6, 30}, 5};
+
+static struct axis gamma_axis(double least, double low)
+{
+	struct axis axis = scan_gamma;
+	const double first = low - least, ratio = pow(50 / first, 1.0 / (axis.count - 1));
+
+	for (int n = 0; n < axis.count; n++)
+		axis.value[n] = least + (least == 1.5 ? axis.value[n] : first * pow(ratio, n));
+	return axis;
+}
+
+static void add_dim(struct search *s, enum coordinate c, double lowest, double highest, const struct axis *axis)
 {
 	const int d = s->dims++;
 
 	s->coordinate[d] = c;
-	s->lo[d] = to_coordinate(c, lowest[c]);
-	s->hi[d] = to_coordinate(c, highest[c]);
+	s->lowest[d] = lowest;
+	s->highest[d] = highest;
+	s->lo[d] = to_coordinate(c, s->least_gamma, lowest);
+	s->hi[d] = to_coordinate(c, s->least_gamma, highest);
+	s->axis[d] = *axis;
 }
 
 static void setup(struct search *s)
@@ -145,13 +174,18 @@ static void setup(struct search *s)
 		return;
 	}
 	if (isnan(o->sigma))
-		add_dim(s, SIGMA);
-	if (ndf_has_gamma(s->class) && isnan(o->gamma))
-		add_dim(s, GAMMA);
+		add_dim(s, SIGMA, FIT_SIGMA_MIN, FIT_SIGMA_MAX, &scan_sigma);
+	if (ndf_has_gamma(s->class) && isnan(o->gamma)) {
+		const struct ndf_param *gamma = ndf_param_at(s->class, 1);
+		const struct axis axis = gamma_axis(gamma->min, gamma->search_min);
+
+		s->least_gamma = gamma->min;
+		add_dim(s, GAMMA, gamma->search_min, gamma->search_max, &axis);
+	}
 	if (o->fresnel != FRESNEL_NONE && isnan(o->ior))
-		add_dim(s, IOR);
+		add_dim(s, IOR, FIT_IOR_MIN, FIT_IOR_MAX, &scan_ior);
 	if (o->fresnel == FRESNEL_CONDUCTOR)
-		add_dim(s, K);
+		add_dim(s, K, 0, FIT_K_MAX, &scan_k);
 }
 
 static struct shape shape_at(const struct search *s, const double x[])
@@ -160,9 +194,9 @@ static struct shape shape_at(const struct search *s, const double x[])
 
 	for (int d = 0; d < s->dims; d++) {
 		const enum coordinate c = s->coordinate[d];
-		const double value = from_coordinate(c, x[d]);
+		const double value = from_coordinate(c, s->least_gamma, x[d]);
 
-		*parameter(&shape, c) = fmin(fmax(value, lowest[c]), highest[c]);
+		*parameter(&shape, c) = fmin(fmax(value, s->lowest[d]), s->highest[d]);
 	}
 	return shape;
 }
@@ -175,7 +209,7 @@ static void place_of(const struct search *s, const struct shape *shape, double x
 		const enum coordinate c = s->coordinate[d];
 		const double value = *parameter(&copy, c);
 
-		x[d] = fmin(fmax(to_coordinate(c, fmin(value, highest[c])), s->lo[d]), s->hi[d]);
+		x[d] = to_coordinate(c, s->least_gamma, fmin(fmax(value, s->lowest[d]), s->highest[d]));
 	}
 }
 
@@ -197,37 +231,21 @@ struct shape search_shape(const struct fit_options *options, const struct ndf_cl
 	return shape_at(&s, x);
 }
 
-/* The grid of the scan. */
-static const double scan_sigma[] = {1e-4, 2e-4, 4e-4, 7e-4, 1e-3, 1.5e-3, 2.2e-3, 3.2e-3, 4.6e-3, 6.5e-3, 9e-3,
-				    0.0125, 0.0175, 0.025, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2, 0.28, 0.4, 0.55, 0.8,
-				    1.2, 2, 4};
-static const double scan_gamma[] = {1.5001, 1.501, 1.505, 1.515, 1.54, 1.6, 1.75, 2.2, 3.5, 8, 50};
-static const double scan_ior[] = {1.03, 1.15, 1.35, 1.8, 3, 8, 60};
-static const double scan_k[] = {0, 0.5, 2, 6, 30};
-
-struct axis {
-	const double *value;
-	int count;
-};
-#define AXIS(a) {a, sizeof(a) / sizeof(a[0])}
-static const struct axis axis[] = {[SIGMA] = AXIS(scan_sigma), [GAMMA] = AXIS(scan_gamma), [IOR] = AXIS(scan_ior),
-				   [K] = AXIS(scan_k)};
-
 static long grid_size(const struct search *s, int from)
 {
 	long size = 1;
 
 	for (int d = from; d < s->dims; d++)
-		size *= axis[s->coordinate[d]].count;
+		size *= s->axis[d].count;
 	return size;
 }
 
 static void grid_place(const struct search *s, long index, struct place *place)
 {
 	for (int d = s->dims - 1; d >= 0; d--) {
-		const struct axis *a = &axis[s->coordinate[d]];
+		const struct axis *a = &s->axis[d];
 
-		place->x[d] = to_coordinate(s->coordinate[d], a->value[index % a->count]);
+		place->x[d] = to_coordinate(s->coordinate[d], s->least_gamma, a->value[index % a->count]);
 		index /= a->count;
 	}
 }
@@ -277,7 +295,7 @@ static bool is_valley(const struct search *s, const struct place *grid, long ind
 	long step = 1;
 
 	for (int d = s->dims - 1; d >= 0; d--) {
-		const int count = axis[s->coordinate[d]].count, at = (int)(index / step % count);
+		const int count = s->axis[d].count, at = (int)(index / step % count);
 
 		if (at > 0 && grid[index - step].error <= grid[index].error)
 			return false;
