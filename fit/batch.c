@@ -100,9 +100,13 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 		status = within_run(context, samples, fit, options->within, fit, result, &file->error);
 	else
 		status = fit_run(context, samples, fit, result, &file->error);
-	for (int i = 0; i < fit->n_ndf && !status; i++)
-		if (result_add(&file->rows, &source, fit, &result[i]))
+	if (status)
+		return status;
+	for (int i = 0; i < fit->n_ndf; i++) {
+		if (!status && result_add(&file->rows, &source, fit, &result[i]))
 			status = error_set(&file->error, STATUS_NO_MEMORY, "out of memory");
+		fit_result_free(&result[i]);
+	}
 	return status;
 }
 

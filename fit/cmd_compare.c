@@ -11,21 +11,31 @@
 #include <string.h>
 #include <strings.h>
 
-/* Columns: material, one error per NDF, winner, gains. */
-enum { GAINS = 2, COLUMNS_MAX = FIT_NDFS_MAX + 2 + GAINS, NAME_SIZE = 64 };
+/* Columns: material, one error per NDF, winner, gains, distances from the floor. */
+enum { MOST_VALUES = 2 * FIT_NDFS_MAX + 2, COLUMNS_MAX = MOST_VALUES + 2, NAME_SIZE = 64 };
+
+/* A column that follows from two errors: how much lower that of `of` is than that of `over`, or, above the floor, how
+ * much higher; percent of the latter. */
+struct relation {
+	const char *of, *over;
+	bool above;
+};
 
 struct comparison {
 	int n_ndf;
 	const char *ndf[FIT_NDFS_MAX]; /* names, borrowed from the rows */
-	char column_name[FIT_NDFS_MAX][NAME_SIZE];
+	int n_relations, n_values; /* n_values: the errors and these */
+	struct relation relation[FIT_NDFS_MAX + 2];
+	char column_name[MOST_VALUES][NAME_SIZE];
 	struct csv_column column[COLUMNS_MAX];
-	double *value[FIT_NDFS_MAX + GAINS]; /* per NDF its errors, then the gains; one per material, NaN = none */
+	double *value[MOST_VALUES]; /* per NDF its errors, then the relations; one per material, NaN = none */
 	size_t n_materials;
 	int wins[FIT_NDFS_MAX], ties;
 	struct csv_table table;
 };
 
-static const char *const gain_over[GAINS] = {"ggx", "beckmann"};
+/* The piecewise-linear NDF is no rival but a bound: what any isotropic NDF could reach. */
+static const char floor_ndf[] = "pl";
 
 /* The place of an NDF in the list; -1 when it is not there. */
 static int ndf_place(const struct comparison *c, const char *ndf)
@@ -50,19 +60,34 @@ static enum status collect_ndfs(struct comparison *c, const struct csv_table *ro
 	return STATUS_OK;
 }
 
+static void set_relations(struct comparison *c)
+{
+	c->relation[c->n_relations++] = (struct relation){"std", "ggx", false};
+	c->relation[c->n_relations++] = (struct relation){"std", "beckmann", false};
+	for (int i = 0; i < c->n_ndf && ndf_place(c, floor_ndf) >= 0; i++)
+		if (strcmp(c->ndf[i], floor_ndf))
+			c->relation[c->n_relations++] = (struct relation){c->ndf[i], floor_ndf, true};
+	c->n_values = c->n_ndf + c->n_relations;
+}
+
 static enum status name_columns(struct comparison *c, size_t n_rows)
 {
 	int n = 0;
 	c->column[n++] = (struct csv_column){"material", false};
-	for (int i = 0; i < c->n_ndf; i++) {
-		snprintf(c->column_name[i], NAME_SIZE, "error_%s", c->ndf[i]);
+	for (int i = 0; i < c->n_values; i++) {
+		const struct relation *r = &c->relation[i - c->n_ndf];
+		if (i == c->n_ndf)
+			c->column[n++] = (struct csv_column){"winner", false};
+		if (i < c->n_ndf)
+			snprintf(c->column_name[i], NAME_SIZE, "error_%s", c->ndf[i]);
+		else if (r->above)
+			snprintf(c->column_name[i], NAME_SIZE, "%s_above_%s", r->of, r->over);
+		else
+			snprintf(c->column_name[i], NAME_SIZE, "gain_over_%s", r->over);
 		c->column[n++] = (struct csv_column){c->column_name[i], true};
 	}
-	c->column[n++] = (struct csv_column){"winner", false};
-	c->column[n++] = (struct csv_column){"gain_over_ggx", true};
-	c->column[n++] = (struct csv_column){"gain_over_beckmann", true};
 	c->table = csv_table_make(c->column, n);
-	for (int i = 0; i < c->n_ndf + GAINS; i++) {
+	for (int i = 0; i < c->n_values; i++) {
 		c->value[i] = calloc(n_rows + 1, sizeof(double));
 		if (!c->value[i])
 			return STATUS_NO_MEMORY;
@@ -73,11 +98,11 @@ static enum status name_columns(struct comparison *c, size_t n_rows)
 /* A line: numbers for the value columns, text for the two others. */
 static enum status add_line(struct comparison *c, const char *material, const double *number, const char *winner)
 {
-	char text[FIT_NDFS_MAX + GAINS][CSV_NUMBER_SIZE];
+	char text[MOST_VALUES][CSV_NUMBER_SIZE];
 	const char *cell[COLUMNS_MAX];
 	int n = 0;
 	cell[n++] = material;
-	for (int i = 0; i < c->n_ndf + GAINS; i++) {
+	for (int i = 0; i < c->n_values; i++) {
 		if (i == c->n_ndf)
 			cell[n++] = winner;
 		cell[n++] = csv_number(text[i], number[i]);
@@ -90,7 +115,7 @@ static const char *find_winner(struct comparison *c, const double *error)
 {
 	int best = -1, same = 0;
 	for (int i = 0; i < c->n_ndf; i++) {
-		if (isnan(error[i]))
+		if (isnan(error[i]) || (c->n_ndf > 1 && !strcmp(c->ndf[i], floor_ndf)))
 			continue;
 		if (best < 0 || error[i] < error[best]) {
 			best = i;
@@ -106,24 +131,25 @@ static const char *find_winner(struct comparison *c, const double *error)
 	return same > 1 ? "tie" : c->ndf[best];
 }
 
-/* How much lower STD's error is than that of gain_over[g], in percent of the latter. */
-static double find_gain(const struct comparison *c, const double *error, int g)
+static double find_relation(const struct comparison *c, const double *error, const struct relation *r)
 {
-	const int std = ndf_place(c, "std"), other = ndf_place(c, gain_over[g]);
-	return std < 0 || other < 0 ? NAN : 100 * (1 - error[std] / error[other]);
+	const int of = ndf_place(c, r->of), over = ndf_place(c, r->over);
+	if (of < 0 || over < 0)
+		return NAN;
+	return r->above ? 100 * (error[of] / error[over] - 1) : 100 * (1 - error[of] / error[over]);
 }
 
 /* Adds the line of rows[0 .. n-1], which are of one material. */
 static enum status add_material(struct comparison *c, char **const *rows, size_t n)
 {
-	double number[FIT_NDFS_MAX + GAINS];
+	double number[MOST_VALUES];
 	for (int i = 0; i < c->n_ndf; i++)
 		number[i] = NAN;
 	for (size_t i = 0; i < n; i++)
 		number[ndf_place(c, rows[i][RESULT_NDF])] = result_number(rows[i], RESULT_ERROR);
-	for (int g = 0; g < GAINS; g++)
-		number[c->n_ndf + g] = find_gain(c, number, g);
-	for (int i = 0; i < c->n_ndf + GAINS; i++)
+	for (int r = 0; r < c->n_relations; r++)
+		number[c->n_ndf + r] = find_relation(c, number, &c->relation[r]);
+	for (int i = 0; i < c->n_values; i++)
 		c->value[i][c->n_materials] = number[i];
 	c->n_materials++;
 	return add_line(c, rows[0][RESULT_MATERIAL], number, find_winner(c, number));
@@ -152,18 +178,17 @@ static enum status add_materials(struct comparison *c, struct csv_table *rows)
 /* Mean, median and worst of each value column; of gains the smallest is the worst. */
 static enum status add_summary(struct comparison *c)
 {
-	double mean[FIT_NDFS_MAX + GAINS], median[FIT_NDFS_MAX + GAINS], worst[FIT_NDFS_MAX + GAINS],
-		wins[FIT_NDFS_MAX + GAINS];
-	for (int i = 0; i < c->n_ndf + GAINS; i++) {
+	double mean[MOST_VALUES], median[MOST_VALUES], worst[MOST_VALUES], wins[MOST_VALUES];
+	for (int i = 0; i < c->n_values; i++) {
 		double *x = c->value[i];
 		size_t n = 0;
 		for (size_t m = 0; m < c->n_materials; m++)
 			if (!isnan(x[m]))
 				x[n++] = x[m];
-		const bool error = i < c->n_ndf;
+		const bool error = i < c->n_ndf, gain = !error && !c->relation[i - c->n_ndf].above;
 		wins[i] = error ? (double)c->wins[i] : (double)NAN;
 		mean[i] = n ? gsl_stats_mean(x, 1, n) : NAN;
-		worst[i] = !n ? NAN : error ? gsl_stats_max(x, 1, n) : gsl_stats_min(x, 1, n);
+		worst[i] = !n ? NAN : gain ? gsl_stats_min(x, 1, n) : gsl_stats_max(x, 1, n);
 		median[i] = n ? gsl_stats_median(x, 1, n) : NAN;
 	}
 	char ties[NAME_SIZE];
@@ -176,7 +201,7 @@ static enum status add_summary(struct comparison *c)
 
 static void comparison_free(struct comparison *c)
 {
-	for (int i = 0; i < c->n_ndf + GAINS; i++)
+	for (int i = 0; i < c->n_values; i++)
 		free(c->value[i]);
 	csv_table_free(&c->table);
 }
@@ -203,6 +228,7 @@ static enum status compare(const struct options *options, struct csv_table *rows
 	struct comparison c = {.n_ndf = 0};
 	enum status status = collect_ndfs(&c, rows, error);
 	if (!status) {
+		set_relations(&c);
 		if (name_columns(&c, rows->n_rows) || add_materials(&c, rows) || add_summary(&c))
 			status = error_set(error, STATUS_NO_MEMORY, "out of memory");
 		else

@@ -94,11 +94,13 @@ static enum status evaluate_rows(struct evaluation *e, struct error *error)
 		if (!wanted(options, rows.row[i], i, material))
 			continue;
 		found++;
-		status = result_model(rows.row[i], &model, &fit, &why);
+		struct pwl *pwl;
+		status = result_model(rows.row[i], &model, &fit, &pwl, &why);
 		if (status)
 			error_set(error, status, "'%s' row %zu: %.200s", name, i + 1, why.text);
 		else
 			status = evaluate(e, &model, &fit, error);
+		result_model_free(&model, pwl);
 	}
 	if (!status && !found)
 		status = error_set(error, STATUS_NO_DATA, "'%s' has no such row", name);

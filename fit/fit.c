@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "algorithms.h"
+#include "free_form.h"
 #include "metrics.h"
 #include "names.h"
 #include "search.h"
@@ -101,18 +102,15 @@ static unsigned bounds_of(const struct fit_result *r, const struct fit_options *
 	return bits;
 }
 
-/* Turns what a search found into a result. */
-static enum status result_of(const struct job *job, const struct ndf_class *class, const struct found *found,
-			     struct fit_result *r)
+/* Turns what a search found into a result; r->model.ndf is there already. */
+static enum status result_with_ndf(const struct job *job, const struct found *found, struct fit_result *r)
 {
 	const struct fit_options *o = job->options;
 	struct cook_torrance *m = &r->model;
 	enum status status;
 
-	*r = (struct fit_result){.diffuse = o->diffuse, .specular = o->specular};
-	status = shape_ndf(&found->shape, class, o->lambda, &m->ndf);
-	if (status != STATUS_OK)
-		return status;
+	r->diffuse = o->diffuse;
+	r->specular = o->specular;
 	m->gaf = o->gaf;
 	m->fresnel = o->fresnel;
 	m->n = found->shape.ior;
@@ -135,6 +133,16 @@ static enum status result_of(const struct job *job, const struct ndf_class *clas
 	return STATUS_OK;
 }
 
+static enum status result_of(const struct job *job, const struct ndf_class *class, const struct found *found,
+			     struct fit_result *r)
+{
+	enum status status;
+
+	*r = (struct fit_result){.pwl = NULL};
+	status = shape_ndf(&found->shape, class, job->options->lambda, &r->model.ndf);
+	return status == STATUS_OK ? result_with_ndf(job, found, r) : status;
+}
+
 /* Nested distributions: at these values of gamma a class is a simpler one, of the same sigma. */
 enum { NESTED = 2 };
 static const char *const nested_name[NESTED] = {"ggx", "beckmann"};
@@ -155,10 +163,10 @@ static const struct nesting *nesting_of(const struct job *job, const struct ndf_
 	return NULL;
 }
 
-/* Fits of the nested models, made when first wanted and shared by all that want them. */
+/* Fits of the nested models, and of STD, made when first wanted and shared by all that want them. */
 struct nested {
-	bool done[NESTED];
-	struct fit_result result[NESTED];
+	bool done[NESTED], std_done;
+	struct fit_result result[NESTED], std;
 };
 
 static enum status fit_alone(const struct job *job, const struct ndf_class *class, struct fit_result *r)
@@ -316,18 +324,79 @@ static bool has_sparse_lambda(const struct job *job, const struct ndf_class *cla
 }
 
 static enum status fit_class(const struct job *job, const struct ndf_class *class, struct nested *nested,
+			     struct fit_result *r);
+
+static enum status fit_std(const struct job *job, const struct nesting *nesting, struct nested *nested)
+{
+	enum status status = STATUS_OK;
+
+	if (!nested->std_done)
+		status = fit_with_nested(job, ndf_find("std"), nesting, nested, &nested->std);
+	nested->std_done = status == STATUS_OK;
+	return status;
+}
+
+/* The piecewise-linear NDF, from the parametric optima. Without a specular term there is nothing to it. */
+static enum status fit_free_form(const struct job *job, struct nested *nested, struct fit_result *r)
+{
+	const double begin = search_clock();
+	const char *const name[] = {"std", "ggx", "beckmann"};
+	struct fit_options exact = *job->options;
+	struct job own = *job;
+	struct cook_torrance starts[3];
+	struct found found;
+	enum status status = STATUS_OK;
+
+	exact.lambda = LAMBDA_EXACT;
+	own.options = &exact;
+	for (int n = 0; n < 3 && status == STATUS_OK; n++) {
+		status = fit_class(&own, ndf_find(name[n]), nested, r);
+		starts[n] = r->model;
+	}
+	if (status != STATUS_OK || !exact.specular)
+		return status;
+	*r = (struct fit_result){.pwl = calloc(1, sizeof *r->pwl)};
+	if (!r->pwl)
+		return STATUS_NO_MEMORY;
+	status = free_form_run(&job->levels, &exact, starts, 3, &found, r->pwl);
+	if (status == STATUS_OK) {
+		ndf_from_pwl(&r->model.ndf, r->pwl);
+		status = result_with_ndf(&own, &found, r);
+	}
+	if (status != STATUS_OK)
+		fit_result_free(r);
+	r->seconds = search_clock() - begin;
+	return status;
+}
+
+void fit_result_free(struct fit_result *result)
+{
+	if (result->pwl)
+		pwl_free(result->pwl);
+	free(result->pwl);
+	result->pwl = NULL;
+}
+
+static enum status fit_class(const struct job *job, const struct ndf_class *class, struct nested *nested,
 			     struct fit_result *r)
 {
 	const struct nesting *nesting = nesting_of(job, class);
+	enum status status;
 
+	if (class == ndf_find("pl"))
+		return fit_free_form(job, nested, r);
+	if (nesting && class == ndf_find("std")) {
+		status = fit_std(job, nesting, nested);
+		*r = nested->std;
+		return status;
+	}
 	if (nesting)
 		return fit_with_nested(job, class, nesting, nested, r);
 	if (has_sparse_lambda(job, class))
 		return fit_each_gamma(job, class, r);
 	for (int n = 0; n < NESTED; n++)
 		if (class == ndf_find(nested_name[n])) {
-			const enum status status = fit_nested(job, nested, n);
-
+			status = fit_nested(job, nested, n);
 			*r = nested->result[n];
 			return status;
 		}
@@ -350,8 +419,12 @@ enum status fit_run(const struct fit_context *context, const struct samples *sam
 		status = levels_init(&job.levels, &full);
 	if (status != STATUS_OK)
 		return error_set(error, status, "%s", status_str(status));
+	for (int n = 0; n < options->n_ndf; n++)
+		results[n].pwl = NULL;
 	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++)
 		status = fit_class(&job, options->ndf[n], &nested, &results[n]);
+	for (int n = 0; n < options->n_ndf && status != STATUS_OK; n++)
+		fit_result_free(&results[n]);
 	levels_free(&job.levels);
 	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
 }

@@ -102,6 +102,7 @@ enum fit_bound {
 
 struct fit_result {
 	struct cook_torrance model; /* parameters; n is meaningless for FRESNEL_NONE or without a specular term */
+	struct pwl *pwl;            /* pl: the table of model.ndf, owned by the result; else NULL */
 	bool diffuse, specular;     /* what the model has, as in the options */
 	double error;               /* E under the fit's own weight */
 	double lower_bound;         /* certified: no kd, ks of this shape goes below it */
@@ -121,9 +122,14 @@ struct fit_context;
 MUST_CHECK enum status fit_context_new(struct fit_context **context, int n_phi_d, const struct fit_options *options);
 void fit_context_free(struct fit_context *context);
 
+/* fit_result_free - releases what a result owns; harmless on a zeroed one, and on any but pl's. */
+void fit_result_free(struct fit_result *result);
+
 /* fit_run - fits every NDF of the options; results[0 .. options->n_ndf - 1], in the options' order.
  * Richer models never end above the nested ones: GGX's and Beckmann's optima are candidates of STD's. Other algorithms
  * than the default fit each NDF by itself.
+ * pl, the piecewise-linear NDF, is fitted to the table itself (free_form.h), from the optima of STD, GGX and Beckmann.
+ * On success each result is to be freed with fit_result_free().
  * Errors: STATUS_NO_DATA (no valid entry, all zero), STATUS_NO_MEMORY, STATUS_INTERRUPTED. */
 MUST_CHECK enum status fit_run(const struct fit_context *context, const struct samples *samples,
 			       const struct fit_options *options, struct fit_result *results, struct error *error);

@@ -44,21 +44,35 @@ enum status shape_ndf(const struct shape *shape, const struct ndf_class *class, 
 	return status == STATUS_UNSUPPORTED ? STATUS_OK : status;
 }
 
-static enum status tabulate(struct objective *o, const struct shape *shape)
+static void tabulate_ndf(struct objective *o, const struct ndf *ndf)
 {
 	const struct geometry *g = o->table->geometry;
+
+	for (int i = 0; i < SAMPLES_THETA_H; i++)
+		o->D[i] = ndf_D(ndf, (struct vec3){g->trig[i].sin_h, 0, g->trig[i].cos_h});
+	if (o->options->gaf != GAF_V_GROOVE)
+		masking_fill(&o->masking, ndf);
+}
+
+void objective_use(struct objective *o, const struct ndf *ndf)
+{
+	o->given = true;
+	tabulate_ndf(o, ndf);
+}
+
+static enum status tabulate(struct objective *o, const struct shape *shape)
+{
 	struct ndf ndf;
 
-	if (shape->sigma == o->tabulated.sigma && shape->gamma == o->tabulated.gamma)
+	const bool same_gamma = shape->gamma == o->tabulated.gamma || !ndf_has_gamma(o->class);
+
+	if (o->given || (shape->sigma == o->tabulated.sigma && same_gamma))
 		return STATUS_OK;
 	const enum status status = shape_ndf(shape, o->class, o->options->lambda, &ndf);
 
 	if (status != STATUS_OK)
 		return status;
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		o->D[i] = ndf_D(&ndf, (struct vec3){g->trig[i].sin_h, 0, g->trig[i].cos_h});
-	if (o->options->gaf != GAF_V_GROOVE)
-		masking_fill(&o->masking, &ndf);
+	tabulate_ndf(o, &ndf);
 	o->tabulated = *shape;
 	return STATUS_OK;
 }

@@ -38,6 +38,7 @@ struct objective {
 	struct kernel_sums (*sums)[SAMPLES_CHANNELS]; /* one set a block */
 	double D[SAMPLES_THETA_H];
 	float row[TABLE_ROWS];
+	bool given;                       /* objective_use() has said which D and G1 */
 	struct shape tabulated;           /* sigma and gamma that masking and D stand for */
 	long passes;                      /* over the table, so far */
 	struct linear start;              /* where the next inner solve begins: the last one's end */
@@ -50,6 +51,10 @@ MUST_CHECK enum status objective_init(struct objective *objective, const struct 
 void objective_free(struct objective *objective);
 /* objective_forget - lets the next inner solve begin from nothing, not where the last one ended. */
 void objective_forget(struct objective *objective);
+
+/* objective_use - from now on the given isotropic distribution, whatever sigma and gamma a shape has; *ndf is only read
+ * during the call. */
+void objective_use(struct objective *objective, const struct ndf *ndf);
 
 /* objective_lobe - the specular term of a shape for ks = 1, slot by slot, into objective->s.
  * Returns STATUS_DOMAIN outside the NDF's domain. */

@@ -246,6 +246,14 @@ static bool any_has_gamma(const struct fit_options *fit)
 	return false;
 }
 
+static bool has_tabulated(const struct fit_options *fit)
+{
+	for (int i = 0; i < fit->n_ndf; i++)
+		if (ndf_is_tabulated(fit->ndf[i]))
+			return true;
+	return false;
+}
+
 /* The first NDF, if any, that does not take the fixed gamma, exactly or in the chosen form of Lambda. */
 static const struct ndf_class *refuses_gamma(const struct fit_options *fit)
 {
@@ -273,6 +281,10 @@ static int check_fit(const struct options *options)
 		return options_usage(options->command, "--ior means nothing with --fresnel none");
 	if (options_given(options, "gamma") && !any_has_gamma(fit))
 		return options_usage(options->command, "--gamma means nothing for these NDFs");
+	if (has_tabulated(fit) && (!fit->specular || fit->algorithm || options->command == COMMAND_BENCH ||
+				   options_given(options, "trace") || !isnan(options->within)))
+		return options_usage(options->command, "--ndf pl goes with neither --no-specular, --algorithm, --trace, "
+						       "--within nor bench");
 	const struct ndf_class *refusing = refuses_gamma(fit);
 	if (refusing)
 		return options_usage(options->command, "invalid value %g for --gamma: %s with --lambda %s does not take it", fit->gamma,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "result.h"
+#include "free_form.h"
 #include "text_quote.h"
 
 #include <inttypes.h>
@@ -110,7 +111,7 @@ static enum status row_finish(struct row *row, struct csv_table *table, const ch
 	return status;
 }
 
-enum { PARAMS_SIZE = 256 };
+enum { PARAMS_SIZE = 8192 }; /* pl has 90 node values */
 
 /* Adds name=value to the text of the column params. */
 static void add_param(char params[PARAMS_SIZE], const char *name, double value)
@@ -118,6 +119,18 @@ static void add_param(char params[PARAMS_SIZE], const char *name, double value)
 	char number[CSV_NUMBER_SIZE];
 	const size_t used = strlen(params);
 	snprintf(params + used, PARAMS_SIZE - used, "%s%s=%s", used ? ";" : "", name, csv_number(number, value));
+}
+
+/* The values of pl: D0 to D89 at the rows of the table, which their bins place, and D90 at the horizon. */
+static void set_nodes(const struct fit_options *options, const struct ndf *ndf, char params[PARAMS_SIZE])
+{
+	for (int i = 0; i < FREE_FORM_VALUES; i++) {
+		const struct halfdiff_trig h = bins_trig(options->bins, i < SAMPLES_THETA_H ? i : 0, 0, 0);
+		const struct vec3 horizon = {1, 0, 1e-300};
+		char name[16];
+		snprintf(name, sizeof name, "D%d", i);
+		add_param(params, name, ndf_D(ndf, i < SAMPLES_THETA_H ? (struct vec3){h.sin_h, 0, h.cos_h} : horizon));
+	}
 }
 
 /* sigma and gamma have columns; what else a distribution has goes to params. */
@@ -132,11 +145,12 @@ static void set_ndf(struct row *row, const struct ndf *ndf, char params[PARAMS_S
 		else
 			add_param(params, name, ndf->param[i]);
 	}
-	if (!ndf_has_gamma(ndf->class))
+	if (!ndf_has_gamma(ndf->class) && !ndf_is_tabulated(ndf->class))
 		set_number(row, RESULT_GAMMA, ndf->gamma);
 }
 
-static void set_model(struct row *row, const struct fit_result *result, char params[PARAMS_SIZE])
+static void set_model(struct row *row, const struct fit_options *options, const struct fit_result *result,
+		      char params[PARAMS_SIZE])
 {
 	const struct cook_torrance *model = &result->model;
 	for (int c = 0; c < 3 && result->diffuse; c++)
@@ -145,7 +159,10 @@ static void set_model(struct row *row, const struct fit_result *result, char par
 		return;
 	for (int c = 0; c < 3; c++)
 		set_number(row, RESULT_KS_R + (enum result_column)c, model->ks[c]);
-	set_ndf(row, &model->ndf, params);
+	if (ndf_is_tabulated(model->ndf.class))
+		set_nodes(options, &model->ndf, params);
+	else
+		set_ndf(row, &model->ndf, params);
 	if (model->fresnel != FRESNEL_NONE)
 		set_number(row, RESULT_IOR, model->n);
 	if (model->fresnel == FRESNEL_CONDUCTOR)
@@ -192,7 +209,7 @@ enum status result_add(struct csv_table *table, const struct result_source *sour
 	if (!row)
 		return STATUS_NO_MEMORY;
 	set_number(row, RESULT_ERROR, result->error);
-	set_model(row, result, params);
+	set_model(row, options, result, params);
 	set_metrics(row, &result->metrics);
 	set_number(row, RESULT_STARTS, result->starts);
 	set_number(row, RESULT_STARTS_AGREEING, result->starts_agreeing);
@@ -261,6 +278,35 @@ static bool find_param(const char *params, const char *name, double *value)
 	return false;
 }
 
+/* pl, from the node values in params. */
+static enum status result_nodes(char *const *row, enum bins bins, struct ndf *ndf, struct pwl **pwl)
+{
+	double D[FREE_FORM_VALUES];
+	for (int i = 0; i < FREE_FORM_VALUES; i++) {
+		char name[16];
+		snprintf(name, sizeof name, "D%d", i);
+		if (!find_param(row[RESULT_PARAMS], name, &D[i]))
+			return STATUS_DOMAIN;
+	}
+	struct pwl *made = calloc(1, sizeof *made);
+	enum status status = made ? free_form_pwl(bins, D, made) : STATUS_NO_MEMORY;
+	if (status) {
+		free(made);
+		return status;
+	}
+	ndf_from_pwl(ndf, made);
+	*pwl = made;
+	return STATUS_OK;
+}
+
+void result_model_free(struct cook_torrance *model, struct pwl *pwl)
+{
+	model->ndf.pwl = NULL;
+	if (pwl)
+		pwl_free(pwl);
+	free(pwl);
+}
+
 /* The distribution of a row, from its columns and params; names the column to blame. */
 static enum status result_ndf(char *const *row, const struct ndf_class *class, struct ndf *ndf,
 			      enum result_column *wrong)
@@ -296,8 +342,9 @@ static enum status result_ndf(char *const *row, const struct ndf_class *class, s
 }
 
 enum status result_model(char *const *row, struct cook_torrance *model, struct fit_options *options,
-			 struct error *error)
+			 struct pwl **pwl, struct error *error)
 {
+	*pwl = NULL;
 	*model = (struct cook_torrance){.n = number_or(row, RESULT_IOR, 1.5)};
 	const struct ndf_class *ndf = ndf_find(row[RESULT_NDF]);
 	if (result_failed(row))
@@ -331,6 +378,8 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 	model->gaf = options->gaf;
 	model->fresnel = options->fresnel;
 	enum result_column wrong;
+	if (ndf_is_tabulated(ndf))
+		return result_nodes(row, options->bins, &model->ndf, pwl) ? bad_cell(row, RESULT_PARAMS, error) : STATUS_OK;
 	if (result_ndf(row, ndf, &model->ndf, &wrong))
 		return bad_cell(row, wrong, error);
 	return STATUS_OK;

@@ -77,7 +77,9 @@ double result_number(char *const *row, enum result_column column);
  * was fitted. What a row leaves empty the model has not: kd = 0 or ks = 0. STATUS_FORMAT when the row is of a failed
  * fit or describes no model; `error` then says what is wrong in it. */
 MUST_CHECK enum status result_model(char *const *row, struct cook_torrance *model, struct fit_options *options,
-				    struct error *error);
+				    struct pwl **pwl, struct error *error);
+/* result_model_free - frees the table, if any, that result_model() made for the model's NDF: *pwl, NULL unless it is pl. */
+void result_model_free(struct cook_torrance *model, struct pwl *pwl);
 
 /* result_order - qsort order of rows (char ***): material, ndf, path. */
 int result_order(const void *a, const void *b);

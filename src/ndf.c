@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "ndf.h"
 #include "ndf_class.h"
+#include "pwl.h"
 #include "student_t.h"
 #include <string.h>
 
 static const struct ndf_class *const classes[] = {
 	&ndf_class_std,          &ndf_class_ggx,      &ndf_class_beckmann, &ndf_class_gtr,
 	&ndf_class_hyper_cauchy, &ndf_class_t_family, &ndf_class_low,
+	&ndf_class_pl,
 };
 
 enum { CLASSES = sizeof(classes) / sizeof(classes[0]) };
@@ -33,6 +35,11 @@ const char *ndf_name(const struct ndf_class *class)
 bool ndf_has_gamma(const struct ndf_class *class)
 {
 	return class->n_params > 1;
+}
+
+bool ndf_is_tabulated(const struct ndf_class *class)
+{
+	return class->n_params == 0;
 }
 
 bool ndf_has_anisotropy(const struct ndf_class *class)
@@ -71,7 +78,7 @@ static bool sigma_valid(double sigma)
 
 enum status ndf_init(struct ndf *ndf, const struct ndf_class *class, double sigma_x, double sigma_y, double gamma)
 {
-	if (!class || !sigma_valid(sigma_x) || !sigma_valid(sigma_y) || (class->isotropic && sigma_x != sigma_y))
+	if (!class || ndf_is_tabulated(class) || !sigma_valid(sigma_x) || !sigma_valid(sigma_y) || (class->isotropic && sigma_x != sigma_y))
 		return STATUS_DOMAIN;
 	struct ndf filled = {
 		.class = class,
@@ -88,7 +95,7 @@ enum status ndf_init(struct ndf *ndf, const struct ndf_class *class, double sigm
 
 enum status ndf_init_params(struct ndf *ndf, const struct ndf_class *class, const double value[])
 {
-	if (!class)
+	if (!class || ndf_is_tabulated(class))
 		return STATUS_DOMAIN;
 	struct ndf filled = {
 		.class = class,
@@ -135,6 +142,8 @@ double ndf_G1(const struct ndf *ndf, struct vec3 w)
 
 struct vec3 ndf_sample(const struct ndf *ndf, double u1, double u2)
 {
+	if (ndf->pwl)
+		return pwl_sample(ndf->pwl, u1, u2);
 	const double s = ndf->class->tilt(ndf, u2);
 	const double turn = 2.0 * M_PI * u1;
 	return vec3_unit((struct vec3){ndf->sigma_x * s * cos(turn), ndf->sigma_y * s * sin(turn), 1.0});

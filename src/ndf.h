@@ -10,6 +10,7 @@
  *     t-family       the same, f = 1/(gamma - x) with a second shape x, 2 unless given
  *     gtr            generalised Trowbridge-Reitz, D = c (sigma^2 cos^2 + sin^2)^-gamma
  *     low            the ABC distribution of Low et al., D = A (1 + B (1 - cos))^-C
+ *     pl             piecewise linear in theta between nodes (pwl.h); made by ndf_from_pwl() only
  *
  * The general family D^G(B, C) = (C-1) B (1 + B tan^2)^-C / (pi cos^4), with B = f/sigma^2 and C = gamma, is that of
  * Student-t slopes: std is f = 1/(gamma-1). When isotropic, its members are one set of distributions under different
@@ -28,6 +29,7 @@
 #include "vec3.h"
 #include <stdbool.h>
 
+struct pwl;
 struct ndf_class; /* one row of the table of distributions; see ndf_class.h */
 
 /* Domain of a roughness: far beyond use, but inside it nothing overflows to NaN. */
@@ -53,6 +55,7 @@ struct ndf {
 	double param[NDF_PARAMS_MAX]; /* as ndf_param_at() names them; the first is sigma_x where the class has sigma */
 	enum lambda_form lambda_form; /* how Lambda is computed, */
 	double lambda_K;              /* and the K below for it; 0 for LAMBDA_EXACT */
+	const struct pwl *pwl;        /* pl: the table, not owned; else NULL */
 	/* Cached; 0 where unused. */
 	double K;         /* Gamma(gamma-1/2) / (sqrt(pi) Gamma(gamma-1)) */
 	double a;         /* Student-t slopes: 1/f */
@@ -69,6 +72,8 @@ const struct ndf_class *ndf_at(int index);
 const char *ndf_name(const struct ndf_class *class);
 /* ndf_has_gamma - whether the class has a shape beside its roughness: the argument gamma of ndf_init() matters. */
 bool ndf_has_gamma(const struct ndf_class *class);
+/* ndf_is_tabulated - whether the class has no parameters but a table: ndf_init() refuses it. */
+bool ndf_is_tabulated(const struct ndf_class *class);
 /* ndf_has_anisotropy - whether sigma_x and sigma_y may differ. */
 bool ndf_has_anisotropy(const struct ndf_class *class);
 /* ndf_param_at - the named parameters of a class, index 0, 1, ...; NULL past the last. */
@@ -88,6 +93,9 @@ MUST_CHECK enum status ndf_init(struct ndf *ndf, const struct ndf_class *class, 
  * A struct ndf's param[] given back makes the same distribution, to the bit.
  * Returns: as ndf_init(). */
 MUST_CHECK enum status ndf_init_params(struct ndf *ndf, const struct ndf_class *class, const double value[]);
+
+/* ndf_from_pwl - the isotropic piecewise-linear distribution *pwl, which has to outlive *ndf. */
+void ndf_from_pwl(struct ndf *ndf, const struct pwl *pwl);
 
 /* ndf_set_lambda_form - the form of Lambda that ndf_lambda() and ndf_G1() use from now on; exact after ndf_init().
  * Returns: STATUS_OK; STATUS_UNSUPPORTED for a class with nothing but its exact form (all but std, hyper-cauchy,

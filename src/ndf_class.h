@@ -26,7 +26,7 @@ struct ndf_class {
 	double (*lambda)(const struct ndf *ndf, struct vec3 w);
 	/* Density of the slope q where the roughness is s. */
 	double (*P2)(const struct ndf *ndf, double s, double q);
-	/* tan(theta_m) of the share u of normals, in units of sigma; below it lies the share u. */
+	/* tan(theta_m) of the share u of normals, in units of sigma; below it lies the share u. NULL for pl. */
 	double (*tilt)(const struct ndf *ndf, double u);
 };
 
@@ -42,6 +42,7 @@ extern const struct ndf_class ndf_class_ggx;
 extern const struct ndf_class ndf_class_gtr;
 extern const struct ndf_class ndf_class_hyper_cauchy;
 extern const struct ndf_class ndf_class_low;
+extern const struct ndf_class ndf_class_pl;
 extern const struct ndf_class ndf_class_std;
 extern const struct ndf_class ndf_class_t_family;
 

@@ -23,6 +23,8 @@ static void for_all(void (*check)(const struct cook_torrance *model, struct vec3
 	const double thetas[] = {0.0, 0.01, 13.7, 45.0, 71.3, 89.0, 89.9999};
 	const double phis[] = {0.0, 3.3, 97.0, 180.0};
 	for (int d = 0; ndf_at(d); d++) {
+		if (ndf_is_tabulated(ndf_at(d)))
+			continue;
 		for (double sigma = 0.003; sigma < 4.0; sigma *= 5.7) {
 			struct cook_torrance model = model_make(ndf_name(ndf_at(d)), sigma, 2.7);
 			for (int i = 0; i < 7 * 7 * 4; i++) {

@@ -562,9 +562,17 @@ static void domain(void **state)
 static void table(void **state)
 {
 	(void)state;
-	int count = 0;
+	int count = 0, tabulated = 0;
 	for (; ndf_at(count); count++) {
 		const struct ndf_class *class = ndf_at(count);
+		struct ndf ndf;
+		if (ndf_is_tabulated(class)) {
+			/* Made by ndf_from_pwl() only: tests/test_pwl.c. */
+			assert_int_equal(ndf_init(&ndf, class, 0.3, 0.3, 2.5), STATUS_DOMAIN);
+			assert_ptr_equal(ndf_find(ndf_name(class)), class);
+			tabulated++;
+			continue;
+		}
 		assert_ptr_equal(ndf_find(ndf_name(class)), class);
 		assert_int_equal(ndf_has_gamma(class), class != ndf_find("ggx") && class != ndf_find("beckmann"));
 		bool covered = false;
@@ -572,7 +580,8 @@ static void table(void **state)
 			covered |= strcmp(shapes[i].name, ndf_name(class)) == 0;
 		assert_true(covered);
 	}
-	assert_int_equal(count, SHAPES);
+	assert_int_equal(count, SHAPES + tabulated);
+	assert_int_equal(tabulated, 1);
 	assert_null(ndf_at(-1));
 	assert_null(ndf_at(count + 1));
 	const char *const unknown[] = {"", "GGX", "std ", "trowbridge", NULL};
