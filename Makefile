@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Targets: all (default), check, demo, bench, asan, ubsan, clean. All but `all` and `clean` install what is missing first.
+# Targets: all (default), check, demo, bench, figures, asan, ubsan, clean. All but `all` and `clean` install what is
+# missing first.
 VERSION := 0.1.0
 
 CC ?= cc
@@ -74,6 +75,11 @@ bench: setup
 	@$(MAKE) --no-print-directory $(BUILD)/tests/bench
 	$(BUILD)/tests/bench $(BUILD)/bench.csv
 
+# The STD paper's figures; Fig. 11 of the fits in FITS=FILE.csv, or of the files in MERL=DIR, or of synthetic tables.
+figures: setup
+	@$(MAKE) --no-print-directory all $(BUILD)/tests/figures
+	@FITS='$(FITS)' MERL='$(MERL)' scripts/figures.sh $(BUILD)
+
 demo: setup
 	@$(MAKE) --no-print-directory all
 	@scripts/demo.sh $(BUILD)/stdfit
@@ -82,6 +88,6 @@ clean:
 	rm -rf $(BUILD)
 
 
-.PHONY: all setup check run-tests asan ubsan bench demo clean
+.PHONY: all setup check run-tests asan ubsan bench figures demo clean
 
--include $(lib_objects:.o=.d) $(BUILD)/fit/main.d $(test_sources:tests/%.c=$(BUILD)/tests/%.d)
+-include $(lib_objects:.o=.d) $(BUILD)/fit/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))
