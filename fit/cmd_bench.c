@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* stdfit bench - error against run time: the default search beside others, on one material. */
+/* stdfit bench - error against run time: the default search beside others, on one material; or, with --forms, the forms
+ * of Lambda beside each other. */
 #include "atomic_file.h"
 #include "merl.h"
 #include "options.h"
@@ -42,6 +43,33 @@ static const struct csv_column columns[BENCH_COLUMNS] = {
 	[BENCH_SECONDS] = {"seconds", true},
 };
 
+enum forms_column {
+	FORMS_MATERIAL,
+	FORMS_NDF,
+	FORMS_LAMBDA,
+	FORMS_ERROR,
+	FORMS_ERROR_EXACT,
+	FORMS_SIGMA,
+	FORMS_GAMMA,
+	FORMS_IOR,
+	FORMS_EVALUATIONS,
+	FORMS_SECONDS,
+	FORMS_COLUMNS
+};
+
+static const struct csv_column forms_columns[FORMS_COLUMNS] = {
+	[FORMS_MATERIAL] = {"material", false},
+	[FORMS_NDF] = {"ndf", false},
+	[FORMS_LAMBDA] = {"lambda", false},
+	[FORMS_ERROR] = {"error", true},
+	[FORMS_ERROR_EXACT] = {"error_exact", true},
+	[FORMS_SIGMA] = {"sigma", true},
+	[FORMS_GAMMA] = {"gamma", true},
+	[FORMS_IOR] = {"ior", true},
+	[FORMS_EVALUATIONS] = {"evaluations", true},
+	[FORMS_SECONDS] = {"seconds", true},
+};
+
 /* The course of one algorithm, every search that it takes in one. */
 struct curve {
 	struct trace trace;
@@ -61,6 +89,7 @@ struct bench {
 	struct geometry geometry;
 	struct table full;
 	struct csv_table output;
+	bool incomplete;          /* some form of Lambda could not be fitted */
 	struct atomic_file trace; /* if the options want one */
 	struct error error;
 };
@@ -190,10 +219,10 @@ static enum status add_row(struct bench *b, const struct algorithm *algorithm, c
 }
 
 /* Says on a terminal what is running. */
-static void tell(const struct bench *b, int i)
+static void tell(const struct bench *b, int i, int n, const char *name)
 {
 	if (!b->options->quiet && isatty(STDERR_FILENO))
-		fprintf(stderr, "\r%d of %d: %s\033[K", i + 1, b->n_algorithms, algorithm_name(b->algorithm[i]));
+		fprintf(stderr, "\r%d of %d: %s\033[K", i + 1, n, name);
 }
 
 static void tell_no_more(const struct bench *b)
@@ -220,6 +249,17 @@ static enum status run_algorithm(struct bench *b, const struct algorithm *algori
 	return status;
 }
 
+static enum status read_file(struct bench *b)
+{
+	const struct options *options = b->options;
+	enum status status = merl_read(options->path[0], options->fit.threads, &b->samples, &b->error);
+	if (status)
+		return status;
+	b->material = result_material(options->path[0]);
+	status = b->material ? fit_context_new(&b->context, b->samples.n_phi_d, &options->fit) : STATUS_NO_MEMORY;
+	return status ? error_set(&b->error, status, "%s", status_str(status)) : STATUS_OK;
+}
+
 static enum status prepare(struct bench *b)
 {
 	const struct options *options = b->options;
@@ -229,13 +269,10 @@ static enum status prepare(struct bench *b)
 		b->algorithm[i] = options->algorithm[i];
 	for (int i = 0; i < ALGORITHM_COUNT && !options->n_algorithms; i++)
 		b->algorithm[b->n_algorithms++] = algorithm_at(i);
-	enum status status = merl_read(options->path[0], fit->threads, &b->samples, &b->error);
+	enum status status = read_file(b);
 	if (status)
 		return status;
-	b->material = result_material(options->path[0]);
-	status = b->material ? fit_context_new(&b->context, b->samples.n_phi_d, fit) : STATUS_NO_MEMORY;
-	if (!status)
-		status = geometry_init(&b->geometry, b->samples.n_phi_d, fit);
+	status = geometry_init(&b->geometry, b->samples.n_phi_d, fit);
 	if (!status)
 		status = table_init(&b->full, &b->geometry, &b->samples, fit->threads);
 	if (status == STATUS_NO_DATA)
@@ -254,12 +291,90 @@ static enum status run_all(struct bench *b)
 	if (trace)
 		csv_write_header(b->trace.stream, trace_columns, TRACE_COLUMNS);
 	for (int i = 0; i < b->n_algorithms && !status; i++) {
-		tell(b, i);
+		tell(b, i, b->n_algorithms, algorithm_name(b->algorithm[i]));
 		status = run_algorithm(b, b->algorithm[i]);
 	}
 	tell_no_more(b);
 	if (!status && trace)
 		status = atomic_file_commit(&b->trace, &b->error);
+	return status;
+}
+
+/* E of the result's parameters with the exact Lambda. */
+static enum status eval_exact(struct bench *b, const struct fit_result *result, double *error)
+{
+	const struct fit_options *fit = &b->options->fit;
+	struct cook_torrance model = result->model;
+	struct fit_metrics metrics;
+	enum status status = ndf_set_lambda_form(&model.ndf, LAMBDA_EXACT);
+	if (status)
+		return error_set(&b->error, status, "%s", status_str(status));
+	status = fit_eval(&b->samples, &model, fit, &metrics, &b->error);
+	if (!status)
+		*error = metrics.error[fit->weight];
+	return status;
+}
+
+/* The row of a form; without a result its numbers stay empty. */
+static enum status add_form(struct bench *b, enum lambda_form form, const struct fit_result *result)
+{
+	const struct fit_options *fit = &b->options->fit;
+	double number[FORMS_COLUMNS];
+	char text[FORMS_COLUMNS][CSV_NUMBER_SIZE];
+	const char *cell[FORMS_COLUMNS] = {b->material, ndf_name(fit->ndf[0]), lambda_form_name(form)};
+	for (int c = FORMS_ERROR; c < FORMS_COLUMNS; c++)
+		number[c] = NAN;
+	if (result) {
+		const struct cook_torrance *m = &result->model;
+		const enum status status = eval_exact(b, result, &number[FORMS_ERROR_EXACT]);
+		if (status)
+			return status;
+		number[FORMS_ERROR] = result->error;
+		number[FORMS_SIGMA] = m->ndf.sigma_x;
+		number[FORMS_GAMMA] = m->ndf.gamma;
+		number[FORMS_IOR] = m->fresnel == FRESNEL_NONE ? NAN : m->n;
+		number[FORMS_EVALUATIONS] = (double)result->evaluations;
+		number[FORMS_SECONDS] = result->seconds;
+	}
+	for (int c = FORMS_ERROR; c < FORMS_COLUMNS; c++)
+		cell[c] = csv_number(text[c], number[c]);
+	if (csv_table_add(&b->output, cell))
+		return error_set(&b->error, STATUS_NO_MEMORY, "out of memory");
+	return STATUS_OK;
+}
+
+/* A form that is not defined at the gamma in question has an empty row: expected where that gamma was asked for, an
+ * error, which stops no other form, where the search came to it. */
+static enum status run_form(struct bench *b, enum lambda_form form)
+{
+	struct fit_options fit = b->options->fit;
+	struct fit_result result;
+	fit.lambda = form;
+	if (!isnan(fit.gamma) && !lambda_form_takes(form, fit.gamma))
+		return add_form(b, form, NULL);
+	enum status status = fit_run(b->context, &b->samples, &fit, &result, &b->error);
+	if (status == STATUS_DOMAIN) {
+		tell_no_more(b);
+		report_error("cannot fit %s with Lambda %s: %s", ndf_name(fit.ndf[0]), lambda_form_name(form),
+			     b->error.text);
+		b->incomplete = true;
+		return add_form(b, form, NULL);
+	}
+	if (status)
+		return status;
+	status = add_form(b, form, &result);
+	fit_result_free(&result);
+	return status;
+}
+
+static enum status run_forms(struct bench *b)
+{
+	enum status status = read_file(b);
+	for (int i = 0; i < LAMBDA_FORM_COUNT && !status; i++) {
+		tell(b, i, LAMBDA_FORM_COUNT, lambda_form_name((enum lambda_form)i));
+		status = run_form(b, (enum lambda_form)i);
+	}
+	tell_no_more(b);
 	return status;
 }
 
@@ -274,18 +389,43 @@ static void release(struct bench *b)
 	free(b->material);
 }
 
+static bool has_forms(const struct ndf_class *class)
+{
+	struct ndf ndf;
+	return !ndf_is_tabulated(class) && !ndf_init(&ndf, class, 0.1, 0.1, 3) &&
+	       !ndf_set_lambda_form(&ndf, LAMBDA_RATIONAL);
+}
+
+static int check(const struct options *options)
+{
+	static const char *const excluded[] = {"algorithm", "time", "trace", "lambda", "no-specular"};
+	if (options->n_paths > 1)
+		return options_usage(COMMAND_BENCH, "expected one FILE, found %d", options->n_paths);
+	if (options->fit.n_ndf != 1)
+		return options_usage(COMMAND_BENCH, "--ndf takes one name here");
+	for (size_t i = 0; i < sizeof excluded / sizeof *excluded && options->forms; i++)
+		if (options_given(options, excluded[i]))
+			return options_usage(COMMAND_BENCH, "--forms and --%s exclude each other", excluded[i]);
+	if (options->forms && options->fit.gaf == GAF_V_GROOVE)
+		return options_usage(COMMAND_BENCH, "--forms means nothing with --gaf v-groove, which has no Lambda");
+	if (options->forms && !has_forms(options->fit.ndf[0]))
+		return options_usage(COMMAND_BENCH, "--forms means nothing for %s, which has the exact Lambda only",
+				     ndf_name(options->fit.ndf[0]));
+	return -1;
+}
+
 int cmd_bench(int argc, char **argv, atomic_bool *cancel)
 {
 	struct options options;
 	int code = options_parse(&options, COMMAND_BENCH, argc, argv, cancel);
-	if (code < 0 && options.n_paths > 1)
-		code = options_usage(COMMAND_BENCH, "expected one FILE, found %d", options.n_paths);
-	if (code < 0 && options.fit.n_ndf != 1)
-		code = options_usage(COMMAND_BENCH, "--ndf takes one name here");
+	if (code < 0)
+		code = check(&options);
 	if (code >= 0)
 		return code;
-	struct bench b = {.options = &options, .output = csv_table_make(columns, BENCH_COLUMNS)};
-	const enum status status = run_all(&b);
+	struct bench b = {.options = &options,
+			  .output = options.forms ? csv_table_make(forms_columns, FORMS_COLUMNS)
+						  : csv_table_make(columns, BENCH_COLUMNS)};
+	const enum status status = options.forms ? run_forms(&b) : run_all(&b);
 	/* An interrupted bench shows what it came to. */
 	if (!status || *cancel)
 		report_output(&b.output, options_show(&options), report_table);
@@ -294,5 +434,5 @@ int cmd_bench(int argc, char **argv, atomic_bool *cancel)
 	release(&b);
 	if (*cancel)
 		return EXIT_INTERRUPTED;
-	return status ? EXIT_FAILED : EXIT_DONE;
+	return status || b.incomplete ? EXIT_FAILED : EXIT_DONE;
 }

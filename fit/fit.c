@@ -163,10 +163,11 @@ static const struct nesting *nesting_of(const struct job *job, const struct ndf_
 	return NULL;
 }
 
-/* Fits of the nested models, and of STD, made when first wanted and shared by all that want them. */
+/* Fits that others build on, made when first wanted and shared by all that want them: those of the nested models, and
+ * those of each class by its place in the table of distributions. */
 struct nested {
-	bool done[NESTED], std_done;
-	struct fit_result result[NESTED], std;
+	bool done[NESTED], class_done[FIT_NDFS_MAX];
+	struct fit_result result[NESTED], of_class[FIT_NDFS_MAX];
 };
 
 static enum status fit_alone(const struct job *job, const struct ndf_class *class, struct fit_result *r)
@@ -250,7 +251,9 @@ static enum status start_from_nested(const struct job *job, const struct ndf_cla
 		if (!isnan(nesting->gamma[n]))
 			given[count++] = (struct shape){m->ndf.sigma_x, nesting->gamma[n], m->n, m->k};
 	}
-	status = search_from(&job->levels, job->options, class, given, count, r->error, &found);
+	const struct shape known = {r->model.ndf.sigma_x, r->model.ndf.gamma, r->model.n, r->model.k};
+
+	status = search_from(&job->levels, job->options, class, given, count, &known, r->error, &found);
 	if (status == STATUS_OK && found.linear.error < r->error) {
 		status = result_of(job, class, &found, &other);
 		if (status == STATUS_OK && other.error < r->error) {
@@ -294,13 +297,16 @@ static enum status fit_each_gamma(const struct job *job, const struct ndf_class 
 	struct job own = *job;
 	enum status status = STATUS_OK;
 	struct fit_result one;
+	struct ndf ndf;
 	long evaluations = 0, passes = 0;
 	double seconds = 0;
 
 	own.options = &options;
 	*r = (struct fit_result){.error = INFINITY};
 	for (options.gamma = 1.5; options.gamma <= 16 && status == STATUS_OK; options.gamma += 0.5) {
-		if (!lambda_form_takes(options.lambda, options.gamma))
+		const struct shape shape = {.sigma = 1, .gamma = options.gamma};
+
+		if (shape_ndf(&shape, class, options.lambda, &ndf) != STATUS_OK)
 			continue;
 		status = fit_alone(&own, class, &one);
 		evaluations += one.evaluations;
@@ -320,45 +326,50 @@ static bool has_sparse_lambda(const struct job *job, const struct ndf_class *cla
 	const struct fit_options *o = job->options;
 
 	return (o->lambda == LAMBDA_INTEGER || o->lambda == LAMBDA_HALF_INTEGER) && o->specular && isnan(o->gamma) &&
-	       class == ndf_find("std");
+	       (class == ndf_find("std") || class == ndf_find("hyper-cauchy") || class == ndf_find("t-family"));
 }
 
 static enum status fit_class(const struct job *job, const struct ndf_class *class, struct nested *nested,
 			     struct fit_result *r);
 
-static enum status fit_std(const struct job *job, const struct nesting *nesting, struct nested *nested)
+/* The optima of all the parametric NDFs, of which hyper-cauchy and t-family are STD again. */
+static enum status fit_starts(const struct job *job, struct nested *nested, struct cook_torrance starts[], int *n_starts)
 {
+	static const char *const name[] = {"std", "ggx", "beckmann", "gtr", "low"};
 	enum status status = STATUS_OK;
+	struct fit_result r;
 
-	if (!nested->std_done)
-		status = fit_with_nested(job, ndf_find("std"), nesting, nested, &nested->std);
-	nested->std_done = status == STATUS_OK;
+	for (*n_starts = 0; *n_starts < 5 && status == STATUS_OK; (*n_starts)++) {
+		status = fit_class(job, ndf_find(name[*n_starts]), nested, &r);
+		starts[*n_starts] = r.model;
+	}
 	return status;
 }
 
-/* The piecewise-linear NDF, from the parametric optima. Without a specular term there is nothing to it. */
+/* The piecewise-linear NDF, from the parametric optima. */
 static enum status fit_free_form(const struct job *job, struct nested *nested, struct fit_result *r)
 {
 	const double begin = search_clock();
-	const char *const name[] = {"std", "ggx", "beckmann"};
+	struct nested fresh = {.done = {false}};
 	struct fit_options exact = *job->options;
 	struct job own = *job;
-	struct cook_torrance starts[3];
+	struct cook_torrance starts[5];
 	struct found found;
-	enum status status = STATUS_OK;
+	int n_starts;
+	enum status status;
 
 	exact.lambda = LAMBDA_EXACT;
+	exact.gamma = NAN; /* of the starts: pl itself has none */
 	own.options = &exact;
-	for (int n = 0; n < 3 && status == STATUS_OK; n++) {
-		status = fit_class(&own, ndf_find(name[n]), nested, r);
-		starts[n] = r->model;
-	}
-	if (status != STATUS_OK || !exact.specular)
+	const bool same = job->options->lambda == LAMBDA_EXACT && isnan(job->options->gamma);
+
+	status = fit_starts(&own, same ? nested : &fresh, starts, &n_starts);
+	if (status != STATUS_OK)
 		return status;
 	*r = (struct fit_result){.pwl = calloc(1, sizeof *r->pwl)};
 	if (!r->pwl)
 		return STATUS_NO_MEMORY;
-	status = free_form_run(&job->levels, &exact, starts, 3, &found, r->pwl);
+	status = free_form_run(&job->levels, &exact, starts, n_starts, &found, r->pwl);
 	if (status == STATUS_OK) {
 		ndf_from_pwl(&r->model.ndf, r->pwl);
 		status = result_with_ndf(&own, &found, r);
@@ -377,30 +388,42 @@ void fit_result_free(struct fit_result *result)
 	result->pwl = NULL;
 }
 
-static enum status fit_class(const struct job *job, const struct ndf_class *class, struct nested *nested,
-			     struct fit_result *r)
+static enum status fit_anew(const struct job *job, const struct ndf_class *class, struct nested *nested,
+			    struct fit_result *r)
 {
 	const struct nesting *nesting = nesting_of(job, class);
-	enum status status;
 
-	if (class == ndf_find("pl"))
+	if (ndf_is_tabulated(class))
 		return fit_free_form(job, nested, r);
-	if (nesting && class == ndf_find("std")) {
-		status = fit_std(job, nesting, nested);
-		*r = nested->std;
-		return status;
-	}
 	if (nesting)
 		return fit_with_nested(job, class, nesting, nested, r);
 	if (has_sparse_lambda(job, class))
 		return fit_each_gamma(job, class, r);
 	for (int n = 0; n < NESTED; n++)
 		if (class == ndf_find(nested_name[n])) {
-			status = fit_nested(job, nested, n);
+			const enum status status = fit_nested(job, nested, n);
+
 			*r = nested->result[n];
 			return status;
 		}
 	return fit_alone(job, class, r);
+}
+
+static enum status fit_class(const struct job *job, const struct ndf_class *class, struct nested *nested,
+			     struct fit_result *r)
+{
+	enum status status = STATUS_OK;
+	int place = 0;
+
+	while (ndf_at(place) != class)
+		place++;
+	if (!nested->class_done[place]) {
+		status = fit_anew(job, class, nested, &nested->of_class[place]);
+		/* A table belongs to one result only. */
+		nested->class_done[place] = status == STATUS_OK && !ndf_is_tabulated(class);
+	}
+	*r = nested->of_class[place];
+	return status;
 }
 
 enum status fit_run(const struct fit_context *context, const struct samples *samples, const struct fit_options *options,

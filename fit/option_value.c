@@ -65,6 +65,8 @@ const struct option_spec option_specs[] = {
 	 AT(fit.algorithm), 0, 0},
 	{"algorithm", 0, KIND_ALGORITHMS, BENCH, NOT_RECORDED, "LIST",
 	 "searches to run, separated by commas; all if not given", AT(algorithm), 0, 0},
+	{"forms", 0, KIND_ON, BENCH, NOT_RECORDED, NULL,
+	 "the forms of Lambda instead of algorithms: one fit each by the default search", AT(forms), 0, 0},
 	{"time", 0, KIND_NUMBER, FIT, RECORDED_ALGORITHM, "SECONDS",
 	 "for each fit by another --algorithm than the default; its results then depend on the machine", AT(fit.time_s),
 	 1e-3, 1e6},

@@ -30,7 +30,10 @@ static const struct {
 		 "the end of --time, and the shapes it had evaluated. Every error is that of the full table:\n"
 		 "shapes that the default search judged by a sample of the table are judged anew afterwards.\n"
 		 "Its seconds include that sampling and, for std, the fits of ggx and beckmann inside; where\n"
-		 "it ends early its error stays. The figures depend on the machine and on what else it does.\n"},
+		 "it ends early its error stays. The figures depend on the machine and on what else it does.\n"
+		 "With --forms it fits with each form of Lambda instead, and shows the error, that of the same\n"
+		 "parameters with the exact Lambda, and what the search took. integer and half-integer fit\n"
+		 "every gamma they have; where a form does not take a fixed --gamma, its row is empty.\n"},
 	[COMMAND_EVAL] = {"eval", "FILE", "error of given parameters, no fit",
 			  "Measures how far a model is from a MERL file, under every weight and metric. The model\n"
 			  "comes from options, or from rows of a result table (--from), which also bring their\n"

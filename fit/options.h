@@ -23,6 +23,7 @@ struct options {
 	/* What bench runs; none: all. */
 	const struct algorithm *algorithm[ALGORITHM_COUNT];
 	int n_algorithms;
+	bool forms; /* bench: the forms of Lambda, not algorithms */
 	atomic_bool *cancel;
 	char **path; /* what is no option, in the order given */
 	int n_paths;

@@ -92,6 +92,7 @@ struct search {
 	struct axis axis[SEARCH_DIMS];
 	struct shape fixed; /* values of the parameters that are not searched */
 	_Atomic long evaluations;
+	struct place known; /* found before and in need of beating; its error is INFINITY when there is none */
 	double begin_s;
 	const char *stage;
 	double stage_best; /* least error of this stage */
@@ -427,21 +428,29 @@ static enum status refine(struct search *s, struct objective *o, const struct st
 	return result == NLOPT_OUT_OF_MEMORY ? STATUS_NO_MEMORY : STATUS_OK;
 }
 
-/* Places too near a better one to lead anywhere else go; so do those too far behind. Returns how many stay. */
+static bool near(const struct search *s, const struct place *a, const struct place *b)
+{
+	for (int d = 0; d < s->dims; d++)
+		if (fabs(a->x[d] - b->x[d]) >= 0.02 * (s->hi[d] - s->lo[d]))
+			return false;
+	return true;
+}
+
+/* Places too near a better one to lead anywhere else go; so do those too far behind the best. What has been found before
+ * counts as one of them. Returns how many stay. */
 static int thin_out(const struct search *s, struct place *place, int count, const struct stage *stage)
 {
 	int kept = 0;
 
 	qsort(place, (size_t)count, sizeof *place, by_error);
-	for (int n = 0; n < count && kept < stage->most; n++) {
-		bool near = false;
+	const double best = count > 0 ? fmin(place[0].error, s->known.error) : 0;
 
-		for (int m = 0; m < kept && !near; m++) {
-			near = true;
-			for (int d = 0; d < s->dims; d++)
-				near &= fabs(place[n].x[d] - place[m].x[d]) < 0.02 * (s->hi[d] - s->lo[d]);
-		}
-		if (!near && place[n].error <= (1 + stage->margin) * place[0].error)
+	for (int n = 0; n < count && kept < stage->most; n++) {
+		bool repeats = isfinite(s->known.error) && near(s, &place[n], &s->known);
+
+		for (int m = 0; m < kept && !repeats; m++)
+			repeats = near(s, &place[n], &place[m]);
+		if (!repeats && place[n].error <= (1 + stage->margin) * best)
 			place[kept++] = place[n];
 	}
 	return kept;
@@ -534,10 +543,10 @@ static void random_places(const struct search *s, struct place place[], int coun
 			place[n].x[d] = s->lo[d] + (s->hi[d] - s->lo[d]) * next_uniform(&state);
 }
 
-/* How many of place[from .. count - 1] are within 0.1 % of the best of all. */
-static int agreeing(const struct place place[], int from, int count)
+/* How many of place[from .. count - 1] are within 0.1 % of the best of all, the known one included. */
+static int agreeing(const struct search *s, const struct place place[], int from, int count)
 {
-	double best = INFINITY;
+	double best = s->known.error;
 	int agree = 0;
 
 	for (int n = 0; n < count; n++)
@@ -579,9 +588,10 @@ static int descend(struct search *s, struct place place[], int count, struct fou
 			count += n_random;
 		}
 		begin_stage(s, stages[level].name);
-		*status = refine_all(s, level, place, count);
+		if (count > 0)
+			*status = refine_all(s, level, place, count);
 		if (level <= 1)
-			found->starts_agreeing += agreeing(place, from, count);
+			found->starts_agreeing += agreeing(s, place, from, count);
 	}
 	return *status == STATUS_OK ? thin_out(s, place, count, &stages[SEARCH_LEVELS - 1]) : 0;
 }
@@ -589,7 +599,8 @@ static int descend(struct search *s, struct place place[], int count, struct fou
 static struct search new_search(const struct levels *levels, const struct fit_options *options,
 				const struct ndf_class *class)
 {
-	struct search s = {.levels = levels, .options = options, .class = class, .begin_s = search_clock()};
+	struct search s = {.levels = levels, .options = options, .class = class, .known = {.error = INFINITY},
+			   .begin_s = search_clock()};
 
 	setup(&s);
 	return s;
@@ -617,7 +628,8 @@ enum status search_run(const struct levels *levels, const struct fit_options *op
 }
 
 enum status search_from(const struct levels *levels, const struct fit_options *options, const struct ndf_class *class,
-			const struct shape given[], int n_given, double known, struct found *found)
+			const struct shape given[], int n_given, const struct shape *known, double error,
+			struct found *found)
 {
 	struct fit_options own = *options;
 	struct search s;
@@ -626,14 +638,14 @@ enum status search_from(const struct levels *levels, const struct fit_options *o
 
 	own.starts = 0;
 	s = new_search(levels, &own, class);
+	place_of(&s, known, s.known.x);
+	s.known.error = error;
 	*found = (struct found){.starts = n_given, .linear.error = INFINITY};
 	for (int n = 0; n < n_given; n++)
 		place_of(&s, &given[n], place[n].x);
 	const int count = descend(&s, place, n_given, found, &status);
 
-	found->starts_agreeing = count > 0 && place[0].error <= 1.001 * known ? found->starts_agreeing : 0;
-	/* The largest sample tells E to some 0.003 %. */
-	if (count > 0 && place[0].error <= 1.0002 * known)
+	if (count > 0 && status == STATUS_OK)
 		status = finish(&s, place, count, found);
 	found->evaluations = s.evaluations;
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;

@@ -40,11 +40,11 @@ struct shape search_shape(const struct fit_options *options, const struct ndf_cl
 MUST_CHECK enum status search_run(const struct levels *levels, const struct fit_options *options,
 				  const struct ndf_class *class, struct found *found);
 
-/* search_from - goes down from the given shapes only (at most SEARCH_GIVEN), against an error that is known already:
- * where the samples show that it will not be beaten, the full table is left alone and found->linear.error is INFINITY.
+/* search_from - goes down from the given shapes only (at most SEARCH_GIVEN), against a shape that is known already and
+ * its error: what leads there, or to nothing better, is given up early. If all is, found->linear.error is INFINITY.
  * Errors:  as search_run() */
 MUST_CHECK enum status search_from(const struct levels *levels, const struct fit_options *options,
-				   const struct ndf_class *class, const struct shape given[], int n_given, double known,
-				   struct found *found);
+				   const struct ndf_class *class, const struct shape given[], int n_given,
+				   const struct shape *known, double error, struct found *found);
 
 #endif

@@ -184,6 +184,79 @@ static void the_default_of_a_bench_is_the_fit(void **state)
 	csv_table_free(&fit);
 }
 
+enum { FORM_NAME = 2, FORM_ERROR, FORM_EXACT, FORM_SIGMA, FORM_GAMMA, FORM_IOR, FORM_EVALUATIONS, FORM_SECONDS, FORMS };
+
+static struct csv_table bench_forms(const char *arguments)
+{
+	static const struct csv_column columns[FORMS] = {
+		{"material", false}, {"ndf", false},  {"lambda", false}, {"error", true},       {"error_exact", true},
+		{"sigma", true},     {"gamma", true}, {"ior", true},     {"evaluations", true}, {"seconds", true}};
+	char command[256];
+
+	snprintf(command, sizeof command, "\"$STDFIT\" bench --forms %s >b.csv", arguments);
+	expect_run(command, 0);
+	return read_csv("b.csv", columns, FORMS);
+}
+
+static void a_bench_of_forms_has_a_row_a_form(void **state)
+{
+	static const char *const names[] = {"exact", "2f1", "integer", "half-integer", "rational"};
+	struct csv_table table = bench_forms(SMALL " --sigma 0.15 --ior 1.5");
+	double gamma[5], error[5], error_exact[5];
+
+	(void)state;
+	assert_int_equal(table.n_rows, 5);
+	for (int i = 0; i < 5; i++) {
+		char **row = table.row[i];
+
+		assert_string_equal(row[0], "m");
+		assert_string_equal(row[1], "std");
+		assert_string_equal(row[FORM_NAME], names[i]);
+		error[i] = number(row[FORM_ERROR]);
+		error_exact[i] = number(row[FORM_EXACT]);
+		gamma[i] = number(row[FORM_GAMMA]);
+		check_between(error[i], 0.01, 0.99, "error");
+		check_abs(number(row[FORM_SIGMA]), 0.15, 0, "sigma");
+		check_abs(number(row[FORM_IOR]), 1.5, 0, "ior");
+		check_between(number(row[FORM_EVALUATIONS]), 1, 1e9, "evaluations");
+		check_between(number(row[FORM_SECONDS]), 0, 1e6, "seconds");
+	}
+	check_abs(error_exact[0], error[0], 0, "error of the exact form");
+	/* The same function: the same optimum, as near as a search comes to it. */
+	check_rel(error_exact[1], error[1], 1e-9, "2f1 is exact");
+	check_rel(error[1], error[0], 1e-6, "2f1 and exact");
+	/* Only some gammas: each sum has the one next to 1.9 or further, and cannot be better. */
+	check_abs(gamma[2], round(gamma[2]), 0, "integer");
+	check_abs(gamma[3] - 0.5, round(gamma[3] - 0.5), 0, "half-integer");
+	check_between(error[2], error[0] * (1 - 1e-6), 0.99, "integer");
+	check_between(error[3], error[2], 0.99, "half-integer");
+	/* Off by some tenths of a percent in G1: another E, and none below the exact one's own. */
+	assert_true(error_exact[4] != error[4]);
+	check_between(error_exact[4], error[0] * (1 - 1e-6), error[0] * 1.01, "rational");
+	csv_table_free(&table);
+}
+
+/* 2.5 is a half-integer: no row but the integer's stays empty, whose name remains. */
+static void a_form_without_the_gamma_has_an_empty_row(void **state)
+{
+	struct csv_table table = bench_forms(SMALL " --ndf t-family --sigma 0.15 --ior 1.5 --gamma 2.5");
+
+	(void)state;
+	assert_int_equal(table.n_rows, 5);
+	for (int i = 0; i < 5; i++) {
+		char **row = table.row[i];
+		const bool empty = !strcmp(row[FORM_NAME], "integer");
+
+		assert_string_equal(row[1], "t-family");
+		for (int c = FORM_ERROR; c < FORMS; c++)
+			assert_int_equal(!*row[c], empty);
+		if (!empty)
+			check_abs(number(row[FORM_GAMMA]), 2.5, 0, "gamma");
+	}
+	assert_string_equal(table.row[2][FORM_NAME], "integer");
+	csv_table_free(&table);
+}
+
 static void a_fit_records_its_algorithm(void **state)
 {
 	struct csv_table rows, trace;
@@ -232,6 +305,13 @@ static void wrong_usage(void **state)
 		{"bench m.binary --ndf std,ggx", "--ndf takes one name"},
 		{"bench m.binary --algorithm crs2,crs2", "twice"},
 		{"bench", "expected FILE"},
+		{"bench m.binary --forms --algorithm crs2", "--forms and --algorithm exclude each other"},
+		{"bench m.binary --forms --time 3", "--forms and --time exclude each other"},
+		{"bench m.binary --forms --trace t.csv", "--forms and --trace exclude each other"},
+		{"bench m.binary --forms --lambda 2f1", "--forms and --lambda exclude each other"},
+		{"bench m.binary --forms --no-specular", "--forms and --no-specular exclude each other"},
+		{"bench m.binary --forms --gaf v-groove", "which has no Lambda"},
+		{"bench m.binary --forms --ndf ggx", "--forms means nothing for ggx"},
 	};
 
 	(void)state;
@@ -288,9 +368,14 @@ static void a_trace_can_be_plotted(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(a_bench_has_a_row_an_algorithm), cmocka_unit_test(the_default_of_a_bench_is_the_fit),
-		cmocka_unit_test(a_fit_records_its_algorithm),    cmocka_unit_test(wrong_usage),
-		cmocka_unit_test(a_bench_can_be_interrupted),     cmocka_unit_test(a_trace_can_be_plotted),
+		cmocka_unit_test(a_bench_has_a_row_an_algorithm),
+		cmocka_unit_test(the_default_of_a_bench_is_the_fit),
+		cmocka_unit_test(a_bench_of_forms_has_a_row_a_form),
+		cmocka_unit_test(a_form_without_the_gamma_has_an_empty_row),
+		cmocka_unit_test(a_fit_records_its_algorithm),
+		cmocka_unit_test(wrong_usage),
+		cmocka_unit_test(a_bench_can_be_interrupted),
+		cmocka_unit_test(a_trace_can_be_plotted),
 	};
 
 	return cmocka_run_group_tests_name("bench", tests, set_up, tear_down);
