@@ -131,7 +131,7 @@ static void pass_blocks(struct objective *o, const struct look *look, bool lobe,
  * busy machine this thread then does what the others do not come to, and never waits for one that has not begun. */
 static void pass(struct objective *o, const struct look *look, bool lobe, struct kernel_sums total[])
 {
-	enum { CHUNK = 16 };
+	enum { CHUNK = 8 };
 	const int n_blocks = o->table->n_blocks;
 
 	o->passes++;

@@ -456,8 +456,26 @@ static int thin_out(const struct search *s, struct place *place, int count, cons
 	return kept;
 }
 
-/* Refines the places on one thinned table, one place a thread. */
-static enum status refine_all(struct search *s, int level, struct place *place, int count)
+/* Refines the places on one level's table one after the other; the calling thread leads, the others of its team help
+ * with the passes. */
+static enum status refine_in_turn(struct search *s, int level, struct place *place, int count, struct found *found)
+{
+	struct objective o;
+	enum status status = objective_init(&o, &s->levels->table[level], s->options, s->class, s->options->threads,
+					    MASKING_COARSE);
+
+	if (status != STATUS_OK)
+		return status;
+	for (int n = 0; n < count && status == STATUS_OK; n++)
+		status = refine(s, &o, &stages[level], &place[n], &found->limited);
+	if (level == SEARCH_LEVELS - 1)
+		found->passes += o.passes;
+	objective_free(&o);
+	return status;
+}
+
+/* The same, one place a thread. */
+static enum status refine_at_once(struct search *s, int level, struct place *place, int count)
 {
 	enum status status = STATUS_OK;
 
@@ -483,24 +501,34 @@ static enum status refine_all(struct search *s, int level, struct place *place, 
 	return status;
 }
 
-/* Ends on the full table: refines the places, then solves for kd and ks of the best one to a certified optimum. */
-static enum status finish_alone(struct search *s, struct place *place, int count, struct found *found)
+/* Refines the places on a thinned table, whichever way keeps the threads busy. */
+static enum status refine_all(struct search *s, int level, struct place *place, int count, struct found *found)
 {
-	const struct table *full = &s->levels->table[SEARCH_LEVELS - 1];
-	const int threads = s->options->threads;
-	struct objective o;
-	enum status status = objective_init(&o, full, s->options, s->class, threads, MASKING_COARSE);
+	enum status status = STATUS_OK;
 
-	if (status != STATUS_OK)
-		return status;
-	begin_stage(s, stages[SEARCH_LEVELS - 1].name);
-	for (int n = 0; n < count && status == STATUS_OK && s->dims > 0; n++)
-		status = refine(s, &o, &stages[SEARCH_LEVELS - 1], &place[n], &found->limited);
-	found->passes = o.passes;
-	objective_free(&o);
+	if (count >= s->options->threads || level == 0)
+		return refine_at_once(s, level, place, count);
+#pragma omp parallel num_threads(s->options->threads)
+#pragma omp single
+	status = refine_in_turn(s, level, place, count, found);
+	return status;
+}
+
+/* Ends on the full table: refines the places, then solves for kd and ks of the best one to a certified optimum. */
+static enum status finish_in_turn(struct search *s, struct place *place, int count, struct found *found)
+{
+	const int full = SEARCH_LEVELS - 1;
+	struct objective o;
+	enum status status = STATUS_OK;
+
+	begin_stage(s, stages[full].name);
+	found->limited = false;
+	if (s->dims > 0)
+		status = refine_in_turn(s, full, place, count, found);
 	qsort(place, (size_t)count, sizeof *place, by_error);
 	if (status == STATUS_OK)
-		status = objective_init(&o, full, s->options, s->class, threads, MASKING_FINE);
+		status = objective_init(&o, &s->levels->table[full], s->options, s->class, s->options->threads,
+					MASKING_FINE);
 	if (status != STATUS_OK)
 		return status;
 	found->shape = shape_at(s, place[0].x);
@@ -511,14 +539,13 @@ static enum status finish_alone(struct search *s, struct place *place, int count
 	return STATUS_OK;
 }
 
-/* One thread leads and the others of the team help with the passes. */
 static enum status finish(struct search *s, struct place *place, int count, struct found *found)
 {
 	enum status status = STATUS_OK;
 
 #pragma omp parallel num_threads(s->options->threads) if (s->options->threads > 1)
 #pragma omp single
-	status = finish_alone(s, place, count, found);
+	status = finish_in_turn(s, place, count, found);
 	return status;
 }
 
@@ -589,7 +616,7 @@ static int descend(struct search *s, struct place place[], int count, struct fou
 		}
 		begin_stage(s, stages[level].name);
 		if (count > 0)
-			*status = refine_all(s, level, place, count);
+			*status = refine_all(s, level, place, count, found);
 		if (level <= 1)
 			found->starts_agreeing += agreeing(s, place, from, count);
 	}
