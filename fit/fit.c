@@ -452,6 +452,33 @@ enum status fit_run(const struct fit_context *context, const struct samples *sam
 	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
 }
 
+enum status fit_estimate(const struct fit_context *context, const struct samples *samples,
+			 const struct fit_options *options, double *error)
+{
+	struct levels levels;
+	struct table full;
+	enum status status = table_init(&full, &context->geometry, samples, options->threads);
+	bool known = true;
+
+	*error = INFINITY;
+	if (status != STATUS_OK)
+		return status;
+	status = levels_init(&levels, &full);
+	if (status != STATUS_OK)
+		return status;
+	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++) {
+		double one;
+
+		status = search_estimate(&levels, options, options->ndf[n], &one);
+		*error = fmin(*error, one);
+		known = known && isfinite(one);
+	}
+	if (!known)
+		*error = INFINITY;
+	levels_free(&levels);
+	return status;
+}
+
 enum status fit_eval(const struct samples *samples, const struct cook_torrance *model,
 		     const struct fit_options *options, struct fit_metrics *metrics, struct error *error)
 {

@@ -654,6 +654,26 @@ enum status search_run(const struct levels *levels, const struct fit_options *op
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }
 
+enum status search_estimate(const struct levels *levels, const struct fit_options *options,
+			    const struct ndf_class *class, double *error)
+{
+	struct search s = new_search(levels, options, class);
+	struct place place[MOST_STARTS + 1] = {{.error = 0}};
+	struct found found = {.starts = 0};
+	enum status status = STATUS_OK;
+	int count = s.dims > 0 ? first_places(&s, place, &status) : 1;
+
+	for (int level = 0; level < 2 && status == STATUS_OK && s.dims > 0; level++) {
+		if (level > 0)
+			count = thin_out(&s, place, count, &stages[level]);
+		status = refine_all(&s, level, place, count, &found);
+	}
+	*error = INFINITY;
+	for (int n = 0; n < count && s.dims > 0; n++)
+		*error = fmin(*error, place[n].error);
+	return cancelled(&s) ? STATUS_INTERRUPTED : status;
+}
+
 enum status search_from(const struct levels *levels, const struct fit_options *options, const struct ndf_class *class,
 			const struct shape given[], int n_given, const struct shape *known, double error,
 			struct found *found)

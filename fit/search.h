@@ -40,6 +40,12 @@ struct shape search_shape(const struct fit_options *options, const struct ndf_cl
 MUST_CHECK enum status search_run(const struct levels *levels, const struct fit_options *options,
 				  const struct ndf_class *class, struct found *found);
 
+/* search_estimate - about what search_run() would end with, from the two smallest samples alone: *error is within 0.3 % of
+ * it as a rule, for a quarter of the work.
+ * Errors:  as search_run() */
+MUST_CHECK enum status search_estimate(const struct levels *levels, const struct fit_options *options,
+				       const struct ndf_class *class, double *error);
+
 /* search_from - goes down from the given shapes only (at most SEARCH_GIVEN), against a shape that is known already and
  * its error: what leads there, or to nothing better, is given up early. If all is, found->linear.error is INFINITY.
  * Errors:  as search_run() */

@@ -181,6 +181,31 @@ static int take_whole(struct selection *s, const struct fit_result *whole, doubl
 	return richest;
 }
 
+/* Whether Lambert alone will do, found out before anything else is fitted in full: against an estimate of the best error,
+ * of which the samples may be wrong by a few thousandths. Then it is the choice. */
+static enum status try_lambert(struct selection *s, double percent, bool *chosen, struct error *error)
+{
+	double best;
+	enum status status = fit_estimate(s->context, s->samples, s->options, &best);
+	*chosen = false;
+	if (status)
+		return error_set(error, status, "%s", status_str(status));
+	if (isinf(best))
+		return STATUS_OK;
+	s->limit = best * (1 + percent / 100) * 0.997;
+	for (int i = 0; i < s->list.n && !*chosen && !status; i++) {
+		const struct variant v = s->list.v[i];
+		if (v.terms & TERM_SPECULAR)
+			continue;
+		const struct fit_options o = variant_options(s->options, v);
+		status = fit_run(s->context, s->samples, &o, s->result, error);
+		*chosen = !status && s->result->error <= s->limit;
+		if (*chosen)
+			*s->chosen = o;
+	}
+	return status;
+}
+
 enum status within_run(const struct fit_context *context, const struct samples *samples,
 		       const struct fit_options *options, double percent, struct fit_options *chosen,
 		       struct fit_result *result, struct error *error)
@@ -192,7 +217,11 @@ enum status within_run(const struct fit_context *context, const struct samples *
 			      .chosen = chosen,
 			      .result = result,
 			      .list = list_variants(options)};
-	enum status status = fit_run(context, samples, options, whole, error);
+	bool lambert = false;
+	enum status status = options->specular ? try_lambert(&s, percent, &lambert, error) : STATUS_OK;
+	if (status || lambert)
+		return status;
+	status = fit_run(context, samples, options, whole, error);
 	if (status)
 		return status;
 	const int richest = take_whole(&s, whole, percent);
