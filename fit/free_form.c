@@ -81,22 +81,32 @@ static double scale_of(const double before[], const double after[])
 	return 1;
 }
 
-/* E of a state on the full table: D is normalised, G follows from it, kd and ks are solved for. */
-static enum status evaluate(struct run *r, struct state *s, double tolerance, bool certify)
+/* Has an objective use a state's D, normalised, and the G that follows from it. */
+static enum status use(const struct run *r, struct objective *objective, const struct state *s)
 {
 	struct pwl pwl;
 	struct ndf ndf;
-	enum status status = free_form_pwl(r->options->bins, s->D, &pwl);
+	const enum status status = free_form_pwl(r->options->bins, s->D, &pwl);
 
 	if (status != STATUS_OK)
 		return status;
 	ndf_from_pwl(&ndf, &pwl);
-	objective_use(&r->full, &ndf);
+	objective_use(objective, &ndf);
+	pwl_free(&pwl);
+	return STATUS_OK;
+}
+
+/* E of a state on the full table: D is normalised, G follows from it, kd and ks are solved for. */
+static enum status evaluate(struct run *r, struct state *s, double tolerance, bool certify)
+{
+	const enum status status = use(r, &r->full, s);
+
+	if (status != STATUS_OK)
+		return status;
 	s->D[SAMPLES_THETA_H] *= scale_of(s->D, r->full.D);
 	memcpy(s->D, r->full.D, sizeof r->full.D);
 	objective_eval(&r->full, &s->shape, tolerance, certify, &s->linear);
 	r->evaluations++;
-	pwl_free(&pwl);
 	return STATUS_OK;
 }
 
@@ -124,15 +134,10 @@ static enum status propose(struct run *r, const struct state *s, double D[SAMPLE
 	const size_t slots = (size_t)t->n_blocks * KERNEL_BLOCK;
 	size_t begin[SAMPLES_THETA_H + 1] = {0}, end[SAMPLES_THETA_H];
 	double unit[SAMPLES_THETA_H];
-	struct pwl pwl;
-	struct ndf ndf;
-	enum status status = free_form_pwl(r->options->bins, s->D, &pwl);
+	enum status status = use(r, &r->thin, s);
 
 	if (status != STATUS_OK)
 		return status;
-	ndf_from_pwl(&ndf, &pwl);
-	objective_use(&r->thin, &ndf);
-	pwl_free(&pwl);
 	for (int i = 0; i < SAMPLES_THETA_H; i++)
 		unit[i] = 1;
 	memcpy(r->thin.D, unit, sizeof unit);
