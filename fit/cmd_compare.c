@@ -24,7 +24,7 @@ struct relation {
 struct comparison {
 	int n_ndf;
 	const char *ndf[FIT_NDFS_MAX]; /* names, borrowed from the rows */
-	int n_relations, n_values; /* n_values: the errors and these */
+	int n_relations, n_values;     /* n_values: the errors and these */
 	struct relation relation[FIT_NDFS_MAX + 2];
 	char column_name[MOST_VALUES][NAME_SIZE];
 	struct csv_column column[COLUMNS_MAX];

@@ -28,9 +28,18 @@ enum status weight_find(const char *name, enum weight *weight)
 
 struct fit_options fit_options_default(void)
 {
-	struct fit_options o = {.gaf = GAF_UNCORRELATED, .fresnel = FRESNEL_DIELECTRIC, .weight = WEIGHT_NONE,
-				.bins = BINS_NODE, .max_theta = 90, .diffuse = true, .specular = true,
-				.ior = NAN, .gamma = NAN, .sigma = NAN, .threads = omp_get_max_threads(), .time_s = 10};
+	struct fit_options o = {.gaf = GAF_UNCORRELATED,
+				.fresnel = FRESNEL_DIELECTRIC,
+				.weight = WEIGHT_NONE,
+				.bins = BINS_NODE,
+				.max_theta = 90,
+				.diffuse = true,
+				.specular = true,
+				.ior = NAN,
+				.gamma = NAN,
+				.sigma = NAN,
+				.threads = omp_get_max_threads(),
+				.time_s = 10};
 	static const char *const names[] = {"std", "ggx", "beckmann"};
 
 	for (int n = 0; n < 3; n++)
@@ -333,7 +342,8 @@ static enum status fit_class(const struct job *job, const struct ndf_class *clas
 			     struct fit_result *r);
 
 /* The optima of all the parametric NDFs, of which hyper-cauchy and t-family are STD again. */
-static enum status fit_starts(const struct job *job, struct nested *nested, struct cook_torrance starts[], int *n_starts)
+static enum status fit_starts(const struct job *job, struct nested *nested, struct cook_torrance starts[],
+			      int *n_starts)
 {
 	static const char *const name[] = {"std", "ggx", "beckmann", "gtr", "low"};
 	enum status status = STATUS_OK;

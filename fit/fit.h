@@ -16,7 +16,7 @@ enum weight {
 	WEIGHT_COUNT
 };
 
-const char *weight_name(enum weight weight);              /* "none", "cosine", "solid-angle" */
+const char *weight_name(enum weight weight); /* "none", "cosine", "solid-angle" */
 MUST_CHECK enum status weight_find(const char *name, enum weight *weight);
 
 /* Domain of the fit. */
@@ -51,15 +51,15 @@ struct fit_options {
 	enum lambda_form lambda; /* of STD and its family; the other NDFs have their exact form only */
 	enum weight weight;
 	enum bins bins;
-	double max_theta;      /* degrees; entries with theta_i or theta_o above it are dropped; 90 = none */
-	bool unbounded;        /* kd, ks in [0, inf) instead of [0, 1] */
-	bool diffuse;          /* false: kd = 0 */
-	bool specular;         /* false: ks = 0, no shape is searched */
-	bool gray;             /* one kd and one ks for the three channels */
+	double max_theta;         /* degrees; entries with theta_i or theta_o above it are dropped; 90 = none */
+	bool unbounded;           /* kd, ks in [0, inf) instead of [0, 1] */
+	bool diffuse;             /* false: kd = 0 */
+	bool specular;            /* false: ks = 0, no shape is searched */
+	bool gray;                /* one kd and one ks for the three channels */
 	double ior, gamma, sigma; /* fixed value, or NaN */
-	int starts;            /* extra random starts, which skip the coarsest table; 0 by default */
+	int starts;               /* extra random starts, which skip the coarsest table; 0 by default */
 	uint64_t seed;
-	int threads;           /* threads of one fit; changes no result */
+	int threads;                       /* threads of one fit; changes no result */
 	const struct algorithm *algorithm; /* NULL: the default search; else one of algorithms.h, */
 	double time_s;                     /* which ends after this many seconds */
 	/* Called whenever a search finds a better shape on the table it is working on, by one thread at a time; NULL: never. */
@@ -83,7 +83,7 @@ struct fit_metrics {
 
 enum fit_end {
 	FIT_CONVERGED,
-	FIT_LIMIT,        /* a limit on evaluations or time ended the search */
+	FIT_LIMIT, /* a limit on evaluations or time ended the search */
 };
 
 /* Bits of fit_result.at_bound, and their names for the result table. */

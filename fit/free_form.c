@@ -119,7 +119,8 @@ static int slot_terms(const struct run *r, const struct state *s, size_t n, stru
 
 	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
 		const float *value = table_value(t, block, c) + n % KERNEL_BLOCK;
-		const float per_D = (float)s->linear.ks[c] * r->thin.s[n], below = (float)(s->linear.kd[c] / M_PI) * t->w[n];
+		const float per_D = (float)s->linear.ks[c] * r->thin.s[n],
+			    below = (float)(s->linear.kd[c] / M_PI) * t->w[n];
 
 		for (int a = 0; a < members && per_D > 0; a++)
 			term[count++] = (struct term){(value[a * KERNEL_BLOCK] - below) / per_D, per_D};

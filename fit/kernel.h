@@ -50,12 +50,12 @@ struct kernel_sums {
 struct kernel {
 	const char *name;
 	/* lobe - s = geo row[.] G for one block. */
-	void (*lobe)(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *row, const struct kernel_slots *slots,
-		     float *s);
+	void (*lobe)(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *row,
+		     const struct kernel_slots *slots, float *s);
 	/* pass - sums of one block. Of each slot it takes `members` values, KERNEL_BLOCK apart: 1 of a single and 2 of a
 	 * pair for one channel, 3 or 6 for the three channels under one kd and ks. */
-	void (*pass)(int members, const float *value, const float *w, const float *s,
-		     const struct kernel_look *look, struct kernel_sums *sums);
+	void (*pass)(int members, const float *value, const float *w, const float *s, const struct kernel_look *look,
+		     struct kernel_sums *sums);
 };
 
 extern const struct kernel kernel_plain;

@@ -96,7 +96,8 @@ static double newton_step(const struct l1 *l1, const double slope[2], const doub
 
 	step[0] = step[1] = 0;
 	if (det > 1e-9 * h[0] * h[2]) {
-		const double d[2] = {(h[1] * slope[1] - h[2] * slope[0]) / det, (h[1] * slope[0] - h[0] * slope[1]) / det};
+		const double d[2] = {(h[1] * slope[1] - h[2] * slope[0]) / det,
+				     (h[1] * slope[0] - h[0] * slope[1]) / det};
 
 		if (l1->x[0] + d[0] >= l1->lo[0] && l1->x[0] + d[0] <= l1->hi[0] && l1->x[1] + d[1] >= l1->lo[1] &&
 		    l1->x[1] + d[1] <= l1->hi[1]) {
@@ -172,7 +173,9 @@ static bool snap(struct l1 *l1)
 	for (int a = 0; a < 2; a++) {
 		const double near = 1e-6 * fmin(l1->hi[a] - l1->lo[a], 1);
 
-		l1->x[a] = l1->best[a] - l1->lo[a] < near ? l1->lo[a] : l1->hi[a] - l1->best[a] < near ? l1->hi[a] : l1->best[a];
+		l1->x[a] = l1->best[a] - l1->lo[a] < near   ? l1->lo[a]
+			   : l1->hi[a] - l1->best[a] < near ? l1->hi[a]
+							    : l1->best[a];
 		moved |= l1->x[a] != l1->best[a];
 	}
 	return moved;
@@ -230,7 +233,8 @@ static void guess(struct l1 *l1, double error, const double slope[2])
 
 	l1->cold = false;
 	for (int a = 0; a < 2; a++)
-		l1->x[a] = slope[a] < 0 ? (double)(float)clamp(-share[a] * error / slope[a], l1->lo[a], l1->hi[a]) : l1->lo[a];
+		l1->x[a] = slope[a] < 0 ? (double)(float)clamp(-share[a] * error / slope[a], l1->lo[a], l1->hi[a])
+					: l1->lo[a];
 }
 
 void l1_update(struct l1 *l1, double error, const double slope[2], const double curvature[3])

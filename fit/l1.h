@@ -36,7 +36,7 @@ struct l1 {
 	bool cold, newton, snapped, done; /* done: best, error and gap are final */
 	int n_cuts;
 	struct l1_cut cut[L1_CUTS];
-	int n_corners;         /* the fence: a convex polygon that holds every minimiser */
+	int n_corners; /* the fence: a convex polygon that holds every minimiser */
 	double corner[L1_CORNERS][2];
 };
 

@@ -35,7 +35,8 @@ enum status masking_init(struct masking *m, int32_t q_min, enum masking_density 
 {
 	const int q_floor = q_min >> MASKING_Q_BITS, octaves = MASKING_Q_MAX - q_floor;
 
-	*m = (struct masking){.q_floor = q_floor, .node_bits = density == MASKING_FINE ? 4 : 2,
+	*m = (struct masking){.q_floor = q_floor,
+			      .node_bits = density == MASKING_FINE ? 4 : 2,
 			      .entry_bits = density == MASKING_FINE ? 12 : 7};
 	m->n_nodes = (octaves << m->node_bits) + 1 + 2 * MARGIN;
 	m->n_entries = (octaves << m->entry_bits) + 2;

@@ -24,11 +24,11 @@ int32_t masking_q(struct vec3 w);
 enum masking_density { MASKING_COARSE, MASKING_FINE };
 
 struct masking {
-	int q_floor;             /* whole octave at which the table begins */
+	int q_floor;               /* whole octave at which the table begins */
 	int node_bits, entry_bits; /* nodes and entries an octave, as powers of two */
 	int n_nodes, n_entries;
 	double *node;
-	double (*between)[6];    /* weights of six nodes for each entry from one node to the next */
+	double (*between)[6]; /* weights of six nodes for each entry from one node to the next */
 	float *entry;
 };
 

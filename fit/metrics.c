@@ -120,7 +120,8 @@ static enum status parts_init(struct parts *parts, const struct geometry *g, con
 
 static double cos_product(const struct geometry *g, int n)
 {
-	const struct halfdiff_trig *h = &g->trig[g->row[n] / SAMPLES_THETA_D], *d = &g->trig[g->row[n] % SAMPLES_THETA_D];
+	const struct halfdiff_trig *h = &g->trig[g->row[n] / SAMPLES_THETA_D],
+				   *d = &g->trig[g->row[n] % SAMPLES_THETA_D];
 	const double a = h->cos_h * d->cos_d, b = h->sin_h * d->sin_d * g->trig[g->k[n]].cos_phi;
 
 	return (a - b) * (a + b);

@@ -7,8 +7,8 @@
 enum status objective_init(struct objective *o, const struct table *table, const struct fit_options *options,
 			   const struct ndf_class *class, int threads, enum masking_density density)
 {
-	*o = (struct objective){.table = table, .options = options, .class = class, .kernel = kernel_pick(),
-				.threads = threads};
+	*o = (struct objective){
+		.table = table, .options = options, .class = class, .kernel = kernel_pick(), .threads = threads};
 	o->tabulated.sigma = NAN;
 	objective_forget(o);
 	o->s = aligned_alloc(64, (size_t)table->n_blocks * KERNEL_BLOCK * sizeof *o->s);
@@ -90,8 +90,9 @@ static void fill_rows(struct objective *o, const struct shape *shape)
 
 static void lobe_block(struct objective *o, int block)
 {
-	static const enum kernel_gaf gaf[GAF_COUNT] = {
-		[GAF_UNCORRELATED] = KERNEL_SEPARABLE, [GAF_CORRELATED] = KERNEL_CORRELATED, [GAF_V_GROOVE] = KERNEL_STATIC};
+	static const enum kernel_gaf gaf[GAF_COUNT] = {[GAF_UNCORRELATED] = KERNEL_SEPARABLE,
+						       [GAF_CORRELATED] = KERNEL_CORRELATED,
+						       [GAF_V_GROOVE] = KERNEL_STATIC};
 	const struct kernel_g1 g1 = masking_kernel(&o->masking);
 	const struct kernel_slots slots = table_slots(o->table, block);
 
@@ -184,7 +185,8 @@ static void start(const struct objective *o, struct l1 problem[], int n_problems
 	const struct fit_options *options = o->options;
 	const double *sum = o->table->sum;
 	const double most = most_albedo(options);
-	const double lo[2] = {0, 0}, hi[2] = {options->diffuse ? (double)(float)(most / M_PI) : 0, options->specular ? most : 0};
+	const double lo[2] = {0, 0},
+		     hi[2] = {options->diffuse ? (double)(float)(most / M_PI) : 0, options->specular ? most : 0};
 
 	for (int p = 0; p < n_problems; p++) {
 		const double scale = n_problems == 1 ? sum[0] + sum[1] + sum[2] : sum[p];
@@ -219,7 +221,8 @@ static double window_floor(const struct objective *o, int p)
 {
 	const struct table *t = o->table;
 
-	return 0.02 * (o->options->gray ? (t->sum[0] + t->sum[1] + t->sum[2]) / SAMPLES_CHANNELS : t->sum[p]) / t->sum_w;
+	return 0.02 * (o->options->gray ? (t->sum[0] + t->sum[1] + t->sum[2]) / SAMPLES_CHANNELS : t->sum[p]) /
+	       t->sum_w;
 }
 
 double objective_eval(struct objective *o, const struct shape *shape, double tolerance, bool certify,
@@ -239,7 +242,8 @@ double objective_eval(struct objective *o, const struct shape *shape, double tol
 
 		for (int p = 0; p < n_problems; p++) {
 			look.wanted[p] = !problem[p].done;
-			look.at[p] = (struct kernel_look){problem[p].x[0], problem[p].x[1], problem[p].tau, window_floor(o, p)};
+			look.at[p] = (struct kernel_look){problem[p].x[0], problem[p].x[1], problem[p].tau,
+							  window_floor(o, p)};
 		}
 		pass(o, &look, lobe, total);
 		lobe = going = false;

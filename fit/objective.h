@@ -32,16 +32,16 @@ struct objective {
 	const struct fit_options *options;
 	const struct ndf_class *class;
 	const struct kernel *kernel;
-	int threads; /* more than 1: called by one thread of an OpenMP team, whose others help */
-	struct masking masking;           /* G1 of the shape */
-	float *s;                         /* the lobe, a float a slot */
+	int threads;            /* more than 1: called by one thread of an OpenMP team, whose others help */
+	struct masking masking; /* G1 of the shape */
+	float *s;               /* the lobe, a float a slot */
 	struct kernel_sums (*sums)[SAMPLES_CHANNELS]; /* one set a block */
 	double D[SAMPLES_THETA_H];
 	float row[TABLE_ROWS];
-	bool given;                       /* objective_use() has said which D and G1 */
-	struct shape tabulated;           /* sigma and gamma that masking and D stand for */
-	long passes;                      /* over the table, so far */
-	struct linear start;              /* where the next inner solve begins: the last one's end */
+	bool given;             /* objective_use() has said which D and G1 */
+	struct shape tabulated; /* sigma and gamma that masking and D stand for */
+	long passes;            /* over the table, so far */
+	struct linear start;    /* where the next inner solve begins: the last one's end */
 };
 
 /* objective_init - buffers for one table and one NDF. */

@@ -286,11 +286,13 @@ static int check_fit(const struct options *options)
 		return options_usage(options->command, "--gamma means nothing for these NDFs");
 	if (has_tabulated(fit) && (!fit->specular || fit->algorithm || options->command == COMMAND_BENCH ||
 				   options_given(options, "trace") || !isnan(options->within)))
-		return options_usage(options->command, "--ndf pl goes with neither --no-specular, --algorithm, --trace, "
-						       "--within nor bench");
+		return options_usage(options->command,
+				     "--ndf pl goes with neither --no-specular, --algorithm, --trace, "
+				     "--within nor bench");
 	const struct ndf_class *refusing = refuses_gamma(fit);
 	if (refusing)
-		return options_usage(options->command, "invalid value %g for --gamma: %s with --lambda %s does not take it", fit->gamma,
+		return options_usage(options->command,
+				     "invalid value %g for --gamma: %s with --lambda %s does not take it", fit->gamma,
 				     ndf_name(refusing), lambda_form_name(fit->lambda));
 	if (options->command == COMMAND_FIT && !fit->algorithm && options_given(options, "time"))
 		return options_usage(options->command, "--time means nothing without another --algorithm than default");

@@ -341,8 +341,8 @@ static enum status result_ndf(char *const *row, const struct ndf_class *class, s
 	return form == LAMBDA_EXACT ? STATUS_OK : ndf_set_lambda_form(ndf, form);
 }
 
-enum status result_model(char *const *row, struct cook_torrance *model, struct fit_options *options,
-			 struct pwl **pwl, struct error *error)
+enum status result_model(char *const *row, struct cook_torrance *model, struct fit_options *options, struct pwl **pwl,
+			 struct error *error)
 {
 	*pwl = NULL;
 	*model = (struct cook_torrance){.n = number_or(row, RESULT_IOR, 1.5)};
@@ -379,7 +379,8 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 	model->fresnel = options->fresnel;
 	enum result_column wrong;
 	if (ndf_is_tabulated(ndf))
-		return result_nodes(row, options->bins, &model->ndf, pwl) ? bad_cell(row, RESULT_PARAMS, error) : STATUS_OK;
+		return result_nodes(row, options->bins, &model->ndf, pwl) ? bad_cell(row, RESULT_PARAMS, error)
+									  : STATUS_OK;
 	if (result_ndf(row, ndf, &model->ndf, &wrong))
 		return bad_cell(row, wrong, error);
 	return STATUS_OK;

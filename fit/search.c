@@ -120,8 +120,9 @@ static void note(struct search *s, const struct shape *shape, double error)
 		return;
 #pragma omp critical(search_trace)
 	if (error < s->stage_best) {
-		const struct fit_trace point = {s->class, s->stage, shape->sigma, shape->gamma, shape->ior, shape->k,
-						error, s->evaluations, search_clock() - s->begin_s};
+		const struct fit_trace point = {s->class,     s->stage,       shape->sigma,
+						shape->gamma, shape->ior,     shape->k,
+						error,        s->evaluations, search_clock() - s->begin_s};
 
 		s->stage_best = error;
 		s->options->trace(s->options->trace_data, &point);
@@ -135,9 +136,10 @@ static bool cancelled(const struct search *s)
 
 /* The grid of the scan. Places in gamma are those of STD, above its least gamma; other NDFs get as many between the
  * ends of theirs, up to 50. */
-static const struct axis scan_sigma = {{1e-4, 2e-4, 4e-4, 7e-4, 1e-3, 1.5e-3, 2.2e-3, 3.2e-3, 4.6e-3,
-					6.5e-3, 9e-3, 0.0125, 0.0175, 0.025, 0.035, 0.05, 0.07, 0.1,
-					0.14, 0.2, 0.28, 0.4, 0.55, 0.8, 1.2, 2, 4}, 27};
+static const struct axis scan_sigma = {{1e-4,   2e-4, 4e-4,   7e-4,   1e-3,  1.5e-3, 2.2e-3, 3.2e-3, 4.6e-3,
+					6.5e-3, 9e-3, 0.0125, 0.0175, 0.025, 0.035,  0.05,   0.07,   0.1,
+					0.14,   0.2,  0.28,   0.4,    0.55,  0.8,    1.2,    2,      4},
+				       27};
 static const struct axis scan_gamma = {{1e-4, 1e-3, 0.005, 0.015, 0.04, 0.1, 0.25, 0.7, 2, 6.5, 48.5}, 11};
 static const struct axis scan_ior = {{1.03, 1.15, 1.35, 1.8, 3, 8, 60}, 7};
 static const struct axis scan_k = {{0, 0.5, 2, 6, 30}, 5};
@@ -256,7 +258,8 @@ static void grid_place(const struct search *s, long index, struct place *place)
 static enum status scan(struct search *s, struct place *grid)
 {
 	const long total = grid_size(s, 0);
-	const int first_ior = s->dims > 0 && s->coordinate[0] == SIGMA ? 1 + (s->dims > 1 && s->coordinate[1] == GAMMA) : 0;
+	const int first_ior =
+		s->dims > 0 && s->coordinate[0] == SIGMA ? 1 + (s->dims > 1 && s->coordinate[1] == GAMMA) : 0;
 	const long stretch = grid_size(s, first_ior);
 	enum status status = STATUS_OK;
 
@@ -341,8 +344,8 @@ static int pick_starts(const struct search *s, struct place *grid, struct place 
 /* How a level is searched. */
 struct stage {
 	const char *name;
-	int most;         /* places that go on from the level before, at most */
-	double margin;    /* those whose error is within this of the best, relative */
+	int most;      /* places that go on from the level before, at most */
+	double margin; /* those whose error is within this of the best, relative */
 	nlopt_algorithm algorithm;
 	double step;      /* first step, in grid spacings */
 	double tolerance; /* of the error, relative */
@@ -461,8 +464,8 @@ static int thin_out(const struct search *s, struct place *place, int count, cons
 static enum status refine_in_turn(struct search *s, int level, struct place *place, int count, struct found *found)
 {
 	struct objective o;
-	enum status status = objective_init(&o, &s->levels->table[level], s->options, s->class, s->options->threads,
-					    MASKING_COARSE);
+	enum status status =
+		objective_init(&o, &s->levels->table[level], s->options, s->class, s->options->threads, MASKING_COARSE);
 
 	if (status != STATUS_OK)
 		return status;
@@ -482,7 +485,8 @@ static enum status refine_at_once(struct search *s, int level, struct place *pla
 #pragma omp parallel num_threads(s->options->threads) if (s->options->threads > 1)
 	{
 		struct objective o;
-		enum status mine = objective_init(&o, &s->levels->table[level], s->options, s->class, 1, MASKING_COARSE);
+		enum status mine =
+			objective_init(&o, &s->levels->table[level], s->options, s->class, 1, MASKING_COARSE);
 		const bool ready = mine == STATUS_OK;
 
 #pragma omp for schedule(dynamic)
@@ -626,7 +630,10 @@ static int descend(struct search *s, struct place place[], int count, struct fou
 static struct search new_search(const struct levels *levels, const struct fit_options *options,
 				const struct ndf_class *class)
 {
-	struct search s = {.levels = levels, .options = options, .class = class, .known = {.error = INFINITY},
+	struct search s = {.levels = levels,
+			   .options = options,
+			   .class = class,
+			   .known = {.error = INFINITY},
 			   .begin_s = search_clock()};
 
 	setup(&s);

@@ -23,7 +23,7 @@ struct found {
 	int starts, starts_agreeing; /* local searches on the coarsest table; those within 0.1 % of the best there */
 	bool limited;                /* a limit on evaluations stopped the last local search */
 	long evaluations;
-	long passes;                 /* over the full table */
+	long passes; /* over the full table */
 };
 
 /* search_clock - seconds of a clock that only runs forward. */

@@ -49,7 +49,8 @@ static enum status back_up(const char *path, bool both, struct error *error)
 		return cannot(error, "write", path, ENOMEM);
 	snprintf(backup, size, "%s~", path);
 	/* Where links are not to be had, the file is away for the moment until the new one takes its place. */
-	const bool done = (both && (!unlink(backup) || errno == ENOENT) && !link(path, backup)) || !rename(path, backup);
+	const bool done =
+		(both && (!unlink(backup) || errno == ENOENT) && !link(path, backup)) || !rename(path, backup);
 	const enum status status = done ? STATUS_OK : cannot(error, "write", backup, errno);
 	free(backup);
 	return status;

@@ -31,7 +31,6 @@ double weight_at(enum weight weight, int i, int j, double cos_i, double cos_o)
 	}
 }
 
-
 /* Entries k and half - k have the same model value; at centres the mirror of k is half - 1 - k. */
 static int mirror(enum bins bins, int k)
 {
@@ -130,8 +129,11 @@ enum status geometry_init(struct geometry *g, int n_phi_d, const struct fit_opti
 {
 	const double min_cos = max_theta_cos(options->max_theta);
 
-	*g = (struct geometry){.n_phi_d = n_phi_d, .bins = options->bins, .weight = options->weight,
-			       .gaf = options->gaf, .q_min = MASKING_Q_MAX << MASKING_Q_BITS};
+	*g = (struct geometry){.n_phi_d = n_phi_d,
+			       .bins = options->bins,
+			       .weight = options->weight,
+			       .gaf = options->gaf,
+			       .q_min = MASKING_Q_MAX << MASKING_Q_BITS};
 	for (int k = 0; k < 180; k++)
 		g->trig[k] = bins_trig(g->bins, k % SAMPLES_THETA_H, k % SAMPLES_THETA_D, k);
 #pragma omp parallel for num_threads(options->threads) schedule(dynamic)
@@ -172,8 +174,10 @@ static enum status table_alloc(struct table *table, const struct geometry *geome
 	const size_t slots = (size_t)(pair_blocks + single_blocks) * KERNEL_BLOCK;
 	const size_t values = (size_t)(2 * pair_blocks + single_blocks) * SAMPLES_CHANNELS * KERNEL_BLOCK;
 
-	*table = (struct table){.geometry = geometry, .n_blocks = pair_blocks + single_blocks,
-				.n_pair_blocks = pair_blocks, .n_slots = n_pairs + n_singles};
+	*table = (struct table){.geometry = geometry,
+				.n_blocks = pair_blocks + single_blocks,
+				.n_pair_blocks = pair_blocks,
+				.n_slots = n_pairs + n_singles};
 	table->q_i = aligned_alloc(64, slots * sizeof *table->q_i);
 	table->q_o = aligned_alloc(64, slots * sizeof *table->q_o);
 	table->geo = aligned_alloc(64, slots * sizeof *table->geo);
@@ -391,7 +395,8 @@ static bool taken(const float *p, size_t n, double *running)
 
 enum status table_thin(struct table *table, const struct table *full, int n_slots)
 {
-	const size_t count = (size_t)full->n_blocks * KERNEL_BLOCK, pairs_end = (size_t)full->n_pair_blocks * KERNEL_BLOCK;
+	const size_t count = (size_t)full->n_blocks * KERNEL_BLOCK,
+		     pairs_end = (size_t)full->n_pair_blocks * KERNEL_BLOCK;
 	const double even = 1.0 / full->n_slots;
 	size_t n_taken[2] = {0, 0}, to[2];
 	double running = 0.5;

@@ -17,13 +17,13 @@ struct geometry {
 	enum weight weight;
 	enum gaf gaf;
 	int n_slots;
-	int32_t *q_i, *q_o;        /* masking_q() of wi and wo */
-	float *geo;                /* w / (4 cos_i cos_o), times G for GAF_V_GROOVE */
-	float *w;                  /* weight of an entry */
-	uint16_t *row;             /* theta_d index + 90 theta_h index */
-	uint16_t *k;               /* phi_d index of the first entry of the slot */
+	int32_t *q_i, *q_o;             /* masking_q() of wi and wo */
+	float *geo;                     /* w / (4 cos_i cos_o), times G for GAF_V_GROOVE */
+	float *w;                       /* weight of an entry */
+	uint16_t *row;                  /* theta_d index + 90 theta_h index */
+	uint16_t *k;                    /* phi_d index of the first entry of the slot */
 	int first[SAMPLES_THETA_H + 1]; /* slots of theta_h index i are first[i] .. first[i + 1] - 1 */
-	int32_t q_min;             /* smallest q of all slots */
+	int32_t q_min;                  /* smallest q of all slots */
 	struct halfdiff_trig trig[180]; /* sines and cosines of theta_h, theta_d and phi_d by index; theta up to 89 */
 };
 
@@ -41,10 +41,10 @@ struct table {
 	int32_t *q_i, *q_o;          /* n_blocks * KERNEL_BLOCK of each */
 	float *geo, *w;
 	uint16_t *row;
-	float *value;                /* w m; per block: channel by channel, first members, then second ones */
+	float *value;                 /* w m; per block: channel by channel, first members, then second ones */
 	double sum[SAMPLES_CHANNELS]; /* sum of w m per channel */
 	double sum_w;                 /* sum of w over the entries of one channel */
-	size_t n_entries;            /* entries of three channels */
+	size_t n_entries;             /* entries of three channels */
 };
 
 /* table_init - takes the valid entries out of `samples`. STATUS_NO_DATA when there is none or all are zero. */

@@ -16,8 +16,8 @@ struct cook_torrance {
 	struct ndf ndf;
 	enum gaf gaf;
 	enum fresnel fresnel;
-	double n, k;          /* index of refraction; k only for FRESNEL_CONDUCTOR */
-	double kd[3], ks[3];  /* >= 0 */
+	double n, k;         /* index of refraction; k only for FRESNEL_CONDUCTOR */
+	double kd[3], ks[3]; /* >= 0 */
 };
 
 /* cook_torrance_lobe - F D G / (4 cos_i cos_o), 1/sr: the specular term for ks = 1. Symmetric in wi and wo to rounding;

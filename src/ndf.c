@@ -7,8 +7,7 @@
 
 static const struct ndf_class *const classes[] = {
 	&ndf_class_std,          &ndf_class_ggx,      &ndf_class_beckmann, &ndf_class_gtr,
-	&ndf_class_hyper_cauchy, &ndf_class_t_family, &ndf_class_low,
-	&ndf_class_pl,
+	&ndf_class_hyper_cauchy, &ndf_class_t_family, &ndf_class_low,      &ndf_class_pl,
 };
 
 enum { CLASSES = sizeof(classes) / sizeof(classes[0]) };
@@ -78,7 +77,8 @@ static bool sigma_valid(double sigma)
 
 enum status ndf_init(struct ndf *ndf, const struct ndf_class *class, double sigma_x, double sigma_y, double gamma)
 {
-	if (!class || ndf_is_tabulated(class) || !sigma_valid(sigma_x) || !sigma_valid(sigma_y) || (class->isotropic && sigma_x != sigma_y))
+	if (!class || ndf_is_tabulated(class) || !sigma_valid(sigma_x) || !sigma_valid(sigma_y) ||
+	    (class->isotropic && sigma_x != sigma_y))
 		return STATUS_DOMAIN;
 	struct ndf filled = {
 		.class = class,

@@ -14,7 +14,8 @@ static FILE *csv;
 
 static void put(const char *what, const char *model, int threads, const char *quantity, double value)
 {
-	printf("%-34s %-9s %d thread%s  %-28s %10.4g\n", what, model, threads, threads > 1 ? "s" : " ", quantity, value);
+	printf("%-34s %-9s %d thread%s  %-28s %10.4g\n", what, model, threads, threads > 1 ? "s" : " ", quantity,
+	       value);
 	if (csv)
 		fprintf(csv, "%s,%s,%d,%s,%.6g\n", what, model, threads, quantity, value);
 }
@@ -90,7 +91,8 @@ static double pass_all(const struct objective *o, const struct kernel_g1 *g1, bo
 		if (model)
 			o->kernel->lobe(KERNEL_SEPARABLE, g1, o->row, &slots, o->s + at);
 		for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-			o->kernel->pass(b < t->n_pair_blocks ? 2 : 1, table_value(t, b, c), t->w + at, o->s + at, &look, &sums);
+			o->kernel->pass(b < t->n_pair_blocks ? 2 : 1, table_value(t, b, c), t->w + at, o->s + at, &look,
+					&sums);
 			sum += sums.error;
 		}
 	}
@@ -136,7 +138,8 @@ static void bench_kernel(const struct table *table, const struct fit_options *op
 }
 
 /* Median seconds of a fit of all three NDFs, the table in memory. */
-static double fit_time(const struct samples *samples, const struct fit_options *options, long *evaluations, long *passes)
+static double fit_time(const struct samples *samples, const struct fit_options *options, long *evaluations,
+		       long *passes)
 {
 	struct fit_context *context;
 	struct fit_result results[3];
@@ -196,26 +199,32 @@ static void bench_fits(const struct samples *samples, const struct samples *larg
 	const double two = fit_time(samples, &o, &evaluations, &passes);
 
 	put("fit of three NDFs", "all", 2, "one thread / two threads", one / two);
-	put("fit of three NDFs, 360 table", "all", 2, "time / 180 table", fit_time(large, &o, &evaluations, &passes) / two);
+	put("fit of three NDFs, 360 table", "all", 2, "time / 180 table",
+	    fit_time(large, &o, &evaluations, &passes) / two);
 	o.max_theta = 60;
-	put("fit of three NDFs, max theta 60", "all", 2, "time / whole table", fit_time(samples, &o, &evaluations, &passes) / two);
+	put("fit of three NDFs, max theta 60", "all", 2, "time / whole table",
+	    fit_time(samples, &o, &evaluations, &passes) / two);
 	o.max_theta = 90;
 	o.diffuse = false;
-	put("fit of three NDFs, no diffuse", "all", 2, "time / whole model", fit_time(samples, &o, &evaluations, &passes) / two);
+	put("fit of three NDFs, no diffuse", "all", 2, "time / whole model",
+	    fit_time(samples, &o, &evaluations, &passes) / two);
 	o.diffuse = true;
 	o.gray = true;
-	put("fit of three NDFs, gray", "all", 2, "time / whole model", fit_time(samples, &o, &evaluations, &passes) / two);
+	put("fit of three NDFs, gray", "all", 2, "time / whole model",
+	    fit_time(samples, &o, &evaluations, &passes) / two);
 	o.gray = false;
 	o.n_ndf = 2;
 	o.ndf[0] = ndf_find("ggx");
 	o.ndf[1] = ndf_find("beckmann");
-	put("fit of GGX and Beckmann", "two", 2, "time / three NDFs", fit_time(samples, &o, &evaluations, &passes) / two);
+	put("fit of GGX and Beckmann", "two", 2, "time / three NDFs",
+	    fit_time(samples, &o, &evaluations, &passes) / two);
 }
 
 int main(int argc, char **argv)
 {
 	const struct cook_torrance truth = make_model("std", 0.17, 1.63, 1.6);
-	struct samples samples = make_table(&truth, 180, BINS_NODE, 0.2), large = make_table(&truth, 360, BINS_NODE, 0.2);
+	struct samples samples = make_table(&truth, 180, BINS_NODE, 0.2),
+		       large = make_table(&truth, 360, BINS_NODE, 0.2);
 	struct fit_options options = fit_options_default();
 	struct geometry geometry;
 	struct table table;

@@ -15,8 +15,11 @@ static inline double random_unit(unsigned *seed)
 
 static inline struct cook_torrance make_model(const char *ndf, double sigma, double gamma, double n)
 {
-	struct cook_torrance model = {.gaf = GAF_UNCORRELATED, .fresnel = FRESNEL_DIELECTRIC, .n = n,
-				      .kd = {0.31, 0.12, 0.047}, .ks = {0.42, 0.63, 0.77}};
+	struct cook_torrance model = {.gaf = GAF_UNCORRELATED,
+				      .fresnel = FRESNEL_DIELECTRIC,
+				      .n = n,
+				      .kd = {0.31, 0.12, 0.047},
+				      .ks = {0.42, 0.63, 0.77}};
 
 	if (ndf_init(&model.ndf, ndf_find(ndf), sigma, sigma, gamma) != STATUS_OK)
 		abort();

@@ -416,10 +416,9 @@ static void a_fit_tells_what_it_did(void **state)
 	assert_string_equal(row[RESULT_MAX_THETA], "20");
 	assert_string_equal(row[RESULT_PATH], "a.binary");
 	assert_string_equal(row[RESULT_VERSION], STDFIT_VERSION);
-	assert_string_equal(
-		row[RESULT_OPTIONS],
-		"gaf=uncorrelated lambda=exact fresnel=dielectric weight=none bins=node max-theta=20 unbounded=no no-diffuse=no "
-		"no-specular=no gray=no ior=1.5 gamma=free sigma=0.2 starts=0 seed=0");
+	assert_string_equal(row[RESULT_OPTIONS], "gaf=uncorrelated lambda=exact fresnel=dielectric weight=none "
+						 "bins=node max-theta=20 unbounded=no no-diffuse=no "
+						 "no-specular=no gray=no ior=1.5 gamma=free sigma=0.2 starts=0 seed=0");
 	assert_int_equal(strlen(row[RESULT_INPUT]), strlen("34992012:") + 16);
 	check_rel(result_number(row, RESULT_KD_R), 0.3, 1e-3, "kd_r");
 	check_rel(result_number(row, RESULT_KD_B), 0.1, 1e-3, "kd_b");

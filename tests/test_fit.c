@@ -33,9 +33,12 @@ struct material {
 
 /* Dielectrics with a diffuse part, and metals: kd 0 and a high index. */
 static const struct material materials[] = {
-	{"sharp plastic", "beckmann", 0.021, INFINITY, 1.47}, {"rough metal", "beckmann", 0.37, INFINITY, 9.1},
-	{"rough plastic", "ggx", 0.28, 2, 1.63},              {"sharp metal", "ggx", 0.0133, 2, 12.3},
-	{"rough plastic", "std", 0.31, 1.71, 1.52},           {"sharp metal", "std", 0.017, 2.9, 8.7},
+	{"sharp plastic", "beckmann", 0.021, INFINITY, 1.47},
+	{"rough metal", "beckmann", 0.37, INFINITY, 9.1},
+	{"rough plastic", "ggx", 0.28, 2, 1.63},
+	{"sharp metal", "ggx", 0.0133, 2, 12.3},
+	{"rough plastic", "std", 0.31, 1.71, 1.52},
+	{"sharp metal", "std", 0.017, 2.9, 8.7},
 };
 
 static void recovers_the_parameters(void **state)
@@ -72,7 +75,8 @@ static void recovers_the_parameters(void **state)
 /* Noisy measurements of something that no model is: a sum of two lobes. */
 static struct samples two_lobes(void)
 {
-	struct cook_torrance wide = make_model("beckmann", 0.5, INFINITY, 1.5), narrow = make_model("ggx", 0.03, 2, 1.8);
+	struct cook_torrance wide = make_model("beckmann", 0.5, INFINITY, 1.5),
+			     narrow = make_model("ggx", 0.03, 2, 1.8);
 	struct samples a, b;
 
 	narrow.kd[0] = narrow.kd[1] = narrow.kd[2] = 0;

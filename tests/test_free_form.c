@@ -19,7 +19,8 @@ static void run(const struct samples *samples, const struct fit_options *options
 /* A lobe of its own shape, neither STD nor GGX nor Beckmann: a narrow one on a wide one. */
 static struct samples made(enum bins bins)
 {
-	struct cook_torrance wide = make_model("beckmann", 0.4, INFINITY, 1.6), narrow = make_model("ggx", 0.05, 2, 1.6);
+	struct cook_torrance wide = make_model("beckmann", 0.4, INFINITY, 1.6),
+			     narrow = make_model("ggx", 0.05, 2, 1.6);
 	struct samples a, b;
 
 	narrow.kd[0] = narrow.kd[1] = narrow.kd[2] = 0;
@@ -79,8 +80,8 @@ static void centres_have_a_node_at_the_normal(void **state)
 	assert_int_equal(free_form_pwl(BINS_CENTRE, D, &pwl), STATUS_OK);
 	const double at_row = bins_angles(BINS_CENTRE, 1, 0, 0).theta_h;
 
-	check_rel(pwl_D(&pwl, (struct vec3){sin(at_row), 0, cos(at_row)}) / pwl_D(&pwl, (struct vec3){0, 0, 1}), 2, 1e-12,
-		  "second row against the normal");
+	check_rel(pwl_D(&pwl, (struct vec3){sin(at_row), 0, cos(at_row)}) / pwl_D(&pwl, (struct vec3){0, 0, 1}), 2,
+		  1e-12, "second row against the normal");
 	pwl_free(&pwl);
 	memset(D, 0, sizeof D);
 	assert_int_equal(free_form_pwl(BINS_NODE, D, &pwl), STATUS_DOMAIN);

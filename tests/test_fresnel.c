@@ -120,10 +120,14 @@ static void names(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(golden_dielectric), cmocka_unit_test(golden_conductor),
-		cmocka_unit_test(edges),             cmocka_unit_test(weak_interface),
-		cmocka_unit_test(brewster),          cmocka_unit_test(stays_in_range),
-		cmocka_unit_test(dispatch),          cmocka_unit_test(names),
+		cmocka_unit_test(golden_dielectric),
+		cmocka_unit_test(golden_conductor),
+		cmocka_unit_test(edges),
+		cmocka_unit_test(weak_interface),
+		cmocka_unit_test(brewster),
+		cmocka_unit_test(stays_in_range),
+		cmocka_unit_test(dispatch),
+		cmocka_unit_test(names),
 	};
 	return cmocka_run_group_tests_name("fresnel", tests, NULL, NULL);
 }

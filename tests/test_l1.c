@@ -57,7 +57,8 @@ static double minimum(const struct problem *p)
 			const double det = a[i] * b[j] - a[j] * b[i];
 
 			if (det != 0)
-				try_point(p, (c[i] * b[j] - c[j] * b[i]) / det, (a[i] * c[j] - a[j] * c[i]) / det, &best);
+				try_point(p, (c[i] * b[j] - c[j] * b[i]) / det, (a[i] * c[j] - a[j] * c[i]) / det,
+					  &best);
 		}
 	return best;
 }

@@ -21,7 +21,8 @@ static double worst_error(enum masking_density density)
 			assert_int_equal(ndf_init(&ndf, ndf_find("std"), sigmas[s], sigmas[s], gammas[g]), STATUS_OK);
 			masking_fill(&masking, &ndf);
 			for (int32_t q = q_min + 12345; q < q_max; q += 777777) {
-				const double cot = exp2((double)q / (1 << MASKING_Q_BITS)), sine = 1 / sqrt(1 + cot * cot);
+				const double cot = exp2((double)q / (1 << MASKING_Q_BITS)),
+					     sine = 1 / sqrt(1 + cot * cot);
 				const double exact = ndf_G1(&ndf, (struct vec3){sine, 0, cot * sine});
 
 				worst = fmax(worst, fabs(masking_at(&masking, q) - exact) / exact);

@@ -55,7 +55,8 @@ static struct reference brute_force(const struct samples *samples, const struct 
 	for (int i = 0; i < SAMPLES_THETA_H; i++)
 		for (int j = 0; j < SAMPLES_THETA_D; j++)
 			for (int k = 0; k < samples->n_phi_d; k++) {
-				const size_t at = (size_t)(j + SAMPLES_THETA_D * i) * (size_t)samples->n_phi_d + (size_t)k;
+				const size_t at =
+					(size_t)(j + SAMPLES_THETA_D * i) * (size_t)samples->n_phi_d + (size_t)k;
 				const double deg = 180 / M_PI;
 				struct vec3 wi, wo;
 				double f[3];
@@ -66,7 +67,8 @@ static struct reference brute_force(const struct samples *samples, const struct 
 					continue;
 				cook_torrance_f(model, wi, wo, f);
 				for (int c = 0; c < 3; c++) {
-					const double m = (double)samples->value[c][at], cc = wi.z * wo.z, d = fabs(m - f[c]);
+					const double m = (double)samples->value[c][at], cc = wi.z * wo.z,
+						     d = fabs(m - f[c]);
 					const double w[] = {1, cc, cc * plain_cell(i, j)};
 
 					for (int a = 0; a < WEIGHT_COUNT; a++) {
@@ -107,8 +109,8 @@ static double kernel_error(const struct kernel *kernel, const struct geometry *g
 			const struct kernel_look look = {model->kd[c] / M_PI, model->ks[c], 0.05, 1e-3};
 			struct kernel_sums sums;
 
-			kernel->pass(b < table.n_pair_blocks ? 2 : 1, table_value(&table, b, c), table.w + at, objective.s + at,
-				     &look, &sums);
+			kernel->pass(b < table.n_pair_blocks ? 2 : 1, table_value(&table, b, c), table.w + at,
+				     objective.s + at, &look, &sums);
 			error += sums.error;
 		}
 		sum += table.sum[c];
