@@ -75,10 +75,10 @@ static enum status name_columns(struct comparison *c, size_t n_rows)
 	int n = 0;
 	c->column[n++] = (struct csv_column){"material", false};
 	for (int i = 0; i < c->n_values; i++) {
-		const struct relation *r = &c->relation[i - c->n_ndf];
+		const struct relation *r = i < c->n_ndf ? NULL : &c->relation[i - c->n_ndf];
 		if (i == c->n_ndf)
 			c->column[n++] = (struct csv_column){"winner", false};
-		if (i < c->n_ndf)
+		if (!r)
 			snprintf(c->column_name[i], NAME_SIZE, "error_%s", c->ndf[i]);
 		else if (r->above)
 			snprintf(c->column_name[i], NAME_SIZE, "%s_above_%s", r->of, r->over);
