@@ -223,7 +223,7 @@ static bool hand_on(struct run *run, size_t *n_failed)
 	progress_erase(&progress);
 	if (progress.shown)
 		fprintf(stderr, "%zu of %zu files in %.1f s, %zu failed\n", next, batch->n,
-			seconds_now() - progress.start, *n_failed);
+			search_clock() - progress.start, *n_failed);
 	return stopped;
 }
 

@@ -6,6 +6,7 @@
 #include "options.h"
 #include "report.h"
 #include "result.h"
+#include "search.h"
 #include "table.h"
 #include "trace.h"
 
@@ -112,7 +113,7 @@ static void curve_note(void *data, const struct fit_trace *point)
 {
 	struct curve *curve = data;
 	struct fit_trace own = *point;
-	own.seconds = seconds_now() - curve->begin_s;
+	own.seconds = search_clock() - curve->begin_s;
 	own.evaluations = add_evaluations(curve, point);
 	trace_note(&curve->trace, &own);
 }
@@ -125,7 +126,7 @@ static enum status run_one(struct bench *b, const struct algorithm *algorithm, s
 	fit.algorithm = algorithm;
 	fit.trace = curve_note;
 	fit.trace_data = curve;
-	curve->begin_s = seconds_now();
+	curve->begin_s = search_clock();
 	const enum status status = fit_run(b->context, &b->samples, &fit, &result, &b->error);
 	if (status)
 		return status;

@@ -222,6 +222,16 @@ static enum status fit_all_nested(const struct job *job, const struct nesting *n
 	return STATUS_OK;
 }
 
+/* A result that takes the place of another goes on counting where that one stood. */
+static void keep_effort(struct fit_result *taken, const struct fit_result *before)
+{
+	taken->starts = before->starts;
+	taken->starts_agreeing = before->starts_agreeing;
+	taken->evaluations = before->evaluations;
+	taken->passes = before->passes;
+	taken->seconds = before->seconds;
+}
+
 /* Takes the nested optimum over when it is better than what the richer model found: a richer model never loses. */
 static enum status take_nested(const struct job *job, struct fit_result *r, const struct ndf_class *class,
 			       const struct fit_result *from, double gamma)
@@ -232,11 +242,7 @@ static enum status take_nested(const struct job *job, struct fit_result *r, cons
 
 	if (from->error >= r->error)
 		return STATUS_OK;
-	taken.starts = r->starts;
-	taken.starts_agreeing = r->starts_agreeing;
-	taken.evaluations = r->evaluations;
-	taken.passes = r->passes;
-	taken.seconds = r->seconds;
+	keep_effort(&taken, r);
 	*r = taken;
 	status = ndf_init(&r->model.ndf, class, sigma, sigma, gamma);
 	r->at_bound = bounds_of(r, job->options);
@@ -266,11 +272,7 @@ static enum status start_from_nested(const struct job *job, const struct ndf_cla
 	if (status == STATUS_OK && found.linear.error < r->error) {
 		status = result_of(job, class, &found, &other);
 		if (status == STATUS_OK && other.error < r->error) {
-			other.starts = r->starts;
-			other.starts_agreeing = r->starts_agreeing;
-			other.evaluations = r->evaluations;
-			other.passes = r->passes;
-			other.seconds = r->seconds;
+			keep_effort(&other, r);
 			*r = other;
 		}
 	}

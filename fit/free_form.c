@@ -295,7 +295,7 @@ static struct state state_of(const struct run *r, const struct cook_torrance *mo
 	struct state s = {.shape = {.ior = model->n, .k = model->k}};
 
 	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		s.D[i] = ndf_D(&model->ndf, (struct vec3){g->trig[i].sin_h, 0, g->trig[i].cos_h});
+		s.D[i] = ndf_D(&model->ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
 	const double some = 1e5, without = lambda_with_rim(r, &s, 0), with = lambda_with_rim(r, &s, some);
 	const double want = ndf_lambda(&model->ndf, (struct vec3){M_SQRT1_2, 0, M_SQRT1_2});
 	const double rim = some * (want - without) / (with - without);

@@ -205,33 +205,32 @@ __attribute__((always_inline)) static inline void block(int members, bool curved
 	}
 }
 
+__attribute__((always_inline)) static inline void either_block(int members, const float *m, const float *w,
+							       const float *s, const struct kernel_look *look,
+							       struct kernel_sums *sums)
+{
+	if (look->tau > 0)
+		block(members, true, m, w, s, look, sums);
+	else
+		block(members, false, m, w, s, look, sums);
+}
+
+/* Each count of members gets a loop of its own. */
 static void pass(int members, const float *m, const float *w, const float *s, const struct kernel_look *look,
 		 struct kernel_sums *sums)
 {
-	switch (look->tau > 0 ? members : -members) {
+	switch (members) {
 	case 1:
-		block(1, true, m, w, s, look, sums);
-		break;
-	case -1:
-		block(1, false, m, w, s, look, sums);
+		either_block(1, m, w, s, look, sums);
 		break;
 	case 2:
-		block(2, true, m, w, s, look, sums);
-		break;
-	case -2:
-		block(2, false, m, w, s, look, sums);
+		either_block(2, m, w, s, look, sums);
 		break;
 	case 3:
-		block(3, true, m, w, s, look, sums);
-		break;
-	case -3:
-		block(3, false, m, w, s, look, sums);
+		either_block(3, m, w, s, look, sums);
 		break;
 	case 6:
-		block(6, true, m, w, s, look, sums);
-		break;
-	case -6:
-		block(6, false, m, w, s, look, sums);
+		either_block(6, m, w, s, look, sums);
 		break;
 	}
 }

@@ -108,8 +108,9 @@ struct parts {
 static enum status parts_init(struct parts *parts, const struct geometry *g, const struct cook_torrance *model)
 {
 	for (int i = 0; i < SAMPLES_THETA_H; i++) {
-		parts->D[i] = ndf_D(&model->ndf, (struct vec3){g->trig[i].sin_h, 0, g->trig[i].cos_h});
-		parts->F[i] = fresnel_F(model->fresnel, g->trig[i].cos_d, model->n, model->k);
+		parts->D[i] =
+			ndf_D(&model->ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
+		parts->F[i] = fresnel_F(model->fresnel, g->entries.theta[i].cos_d, model->n, model->k);
 	}
 	if (masking_init(&parts->masking, g->q_min, MASKING_FINE) != STATUS_OK)
 		return STATUS_NO_MEMORY;
@@ -120,9 +121,9 @@ static enum status parts_init(struct parts *parts, const struct geometry *g, con
 
 static double cos_product(const struct geometry *g, int n)
 {
-	const struct halfdiff_trig *h = &g->trig[g->row[n] / SAMPLES_THETA_D],
-				   *d = &g->trig[g->row[n] % SAMPLES_THETA_D];
-	const double a = h->cos_h * d->cos_d, b = h->sin_h * d->sin_d * g->trig[g->k[n]].cos_phi;
+	const struct halfdiff_trig *h = &g->entries.theta[g->row[n] / SAMPLES_THETA_D],
+				   *d = &g->entries.theta[g->row[n] % SAMPLES_THETA_D];
+	const double a = h->cos_h * d->cos_d, b = h->sin_h * d->sin_d * g->entries.phi[g->k[n]].cos_phi;
 
 	return (a - b) * (a + b);
 }

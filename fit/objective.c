@@ -49,7 +49,7 @@ static void tabulate_ndf(struct objective *o, const struct ndf *ndf)
 	const struct geometry *g = o->table->geometry;
 
 	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		o->D[i] = ndf_D(ndf, (struct vec3){g->trig[i].sin_h, 0, g->trig[i].cos_h});
+		o->D[i] = ndf_D(ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
 	if (o->options->gaf != GAF_V_GROOVE)
 		masking_fill(&o->masking, ndf);
 }
@@ -82,7 +82,8 @@ static void fill_rows(struct objective *o, const struct shape *shape)
 	float F[SAMPLES_THETA_D];
 
 	for (int j = 0; j < SAMPLES_THETA_D; j++)
-		F[j] = (float)fresnel_F(o->options->fresnel, o->table->geometry->trig[j].cos_d, shape->ior, shape->k);
+		F[j] = (float)fresnel_F(o->options->fresnel, o->table->geometry->entries.theta[j].cos_d, shape->ior,
+					shape->k);
 	for (int i = 0; i < SAMPLES_THETA_H; i++)
 		for (int j = 0; j < SAMPLES_THETA_D; j++)
 			o->row[j + SAMPLES_THETA_D * i] = (float)o->D[i] * F[j];

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report.h"
 #include "result.h"
+#include "search.h"
 #include "text_quote.h"
 
 #include <math.h>
@@ -205,22 +206,15 @@ void report_fits(FILE *file, const struct csv_table *results, bool heading)
 
 /* Progress */
 
-double seconds_now(void)
-{
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 struct progress progress_start(size_t n, bool quiet)
 {
-	const double now = seconds_now();
+	const double now = search_clock();
 	return (struct progress){.shown = !quiet && n > 1 && isatty(STDERR_FILENO), .n = n, .start = now};
 }
 
 void progress_draw(struct progress *progress)
 {
-	const double now = seconds_now();
+	const double now = search_clock();
 	if (!progress->shown || now - progress->drawn < 1.0 / 6)
 		return;
 	progress->drawn = now;

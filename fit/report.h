@@ -38,7 +38,4 @@ void progress_draw(struct progress *progress);
 /* progress_erase - clears the line so that something else can be written. */
 void progress_erase(struct progress *progress);
 
-/* seconds_now - a clock that only runs forward. */
-double seconds_now(void);
-
 #endif

@@ -68,18 +68,6 @@ double max_theta_cos(double max_theta)
 	return max_theta >= 90 ? 0 : cosine - 1e-12;
 }
 
-/* Sines and cosines of entry (i, j, k), without computing them anew. */
-static struct halfdiff_trig entry_trig(const struct geometry *g, int i, int j, int k)
-{
-	struct halfdiff_trig t = g->trig[i];
-
-	t.sin_d = g->trig[j].sin_d;
-	t.cos_d = g->trig[j].cos_d;
-	t.sin_phi = g->trig[k].sin_phi;
-	t.cos_phi = g->trig[k].cos_phi;
-	return t;
-}
-
 static void set_slot(struct geometry *g, int n, int i, int j, int k, struct vec3 wi, struct vec3 wo)
 {
 	const double w = weight_at(g->weight, i, j, wi.z, wo.z);
@@ -102,7 +90,7 @@ static int row_slots(struct geometry *g, int i, double min_cos, int n)
 
 	for (int j = 0; j < SAMPLES_THETA_D; j++)
 		for (int k = 0; k <= last_k; k++) {
-			halfdiff_trig_dirs(entry_trig(g, i, j, k), &wi, &wo);
+			entries_dirs(&g->entries, i, j, k, &wi, &wo);
 			if (!entry_in_range(wi, wo, min_cos))
 				continue;
 			if (n >= 0)
@@ -134,8 +122,7 @@ enum status geometry_init(struct geometry *g, int n_phi_d, const struct fit_opti
 			       .weight = options->weight,
 			       .gaf = options->gaf,
 			       .q_min = MASKING_Q_MAX << MASKING_Q_BITS};
-	for (int k = 0; k < 180; k++)
-		g->trig[k] = bins_trig(g->bins, k % SAMPLES_THETA_H, k % SAMPLES_THETA_D, k);
+	g->entries = entries_make(g->bins, n_phi_d);
 #pragma omp parallel for num_threads(options->threads) schedule(dynamic)
 	for (int i = 0; i < SAMPLES_THETA_H; i++)
 		g->first[i + 1] = row_slots(g, i, min_cos, -1);

@@ -3,6 +3,7 @@
 #ifndef TABLE_H
 #define TABLE_H
 
+#include "entries.h"
 #include "fit.h"
 #include "kernel.h"
 #include <stddef.h>
@@ -24,7 +25,7 @@ struct geometry {
 	uint16_t *k;                    /* phi_d index of the first entry of the slot */
 	int first[SAMPLES_THETA_H + 1]; /* slots of theta_h index i are first[i] .. first[i + 1] - 1 */
 	int32_t q_min;                  /* smallest q of all slots */
-	struct halfdiff_trig trig[180]; /* sines and cosines of theta_h, theta_d and phi_d by index; theta up to 89 */
+	struct entries entries;
 };
 
 /* geometry_init - the slots above the horizon and within max_theta, under the options' weight, bins and G. */

@@ -3,6 +3,7 @@
 #include "check.h"
 #include "fit.h"
 #include "make_table.h"
+#include "run_fit.h"
 #include <omp.h>
 
 static struct fit_options options_for(const char *ndf)
@@ -13,17 +14,6 @@ static struct fit_options options_for(const char *ndf)
 	o.n_ndf = 1;
 	o.threads = 2;
 	return o;
-}
-
-static void run(const struct samples *samples, const struct fit_options *options, struct fit_result *results)
-{
-	struct fit_context *context;
-	struct error error = {""};
-
-	assert_int_equal(fit_context_new(&context, samples->n_phi_d, options), STATUS_OK);
-	if (fit_run(context, samples, options, results, &error) != STATUS_OK)
-		fail_msg("fit: %s", error.text);
-	fit_context_free(context);
 }
 
 struct material {
@@ -55,7 +45,7 @@ static void recovers_the_parameters(void **state)
 		if (m->n > 3)
 			truth.kd[0] = truth.kd[1] = truth.kd[2] = 0;
 		samples = make_table(&truth, 180, BINS_NODE, 0);
-		run(&samples, &options, &r);
+		run_fit(&samples, &options, &r);
 		snprintf(label, sizeof label, "%s %s", m->what, m->ndf);
 		check_between(r.error, 0, 2e-4, label);
 		check_rel(r.model.ndf.sigma_x, m->sigma, 2e-3, label);
@@ -112,7 +102,7 @@ static void nested_models_and_threads(void **state)
 
 	(void)state;
 	options.threads = 1;
-	run(&samples, &options, r);
+	run_fit(&samples, &options, r);
 	assert_true(r[0].error <= r[1].error);
 	assert_true(r[0].error <= r[2].error);
 	for (int n = 0; n < 3; n++) {
@@ -121,12 +111,12 @@ static void nested_models_and_threads(void **state)
 		check_between(r[n].error - r[n].lower_bound, -1e-8, 1.2e-7, "certified gap");
 	}
 	for (options.threads = 2; options.threads <= 3; options.threads++) {
-		run(&samples, &options, again);
+		run_fit(&samples, &options, again);
 		for (int n = 0; n < 3; n++)
 			check_same(&r[n], &again[n]);
 	}
 	/* STD asked for alone fits the nested models inside. */
-	run(&samples, &alone, &std);
+	run_fit(&samples, &alone, &std);
 	check_same(&r[0], &std);
 	assert_int_equal(fit_eval(&samples, &std.model, &alone, &metrics, NULL), STATUS_OK);
 	assert_memory_equal(&metrics, &std.metrics, sizeof metrics);
@@ -143,19 +133,19 @@ static void options_leave_out_what_they_say(void **state)
 	(void)state;
 	o.sigma = 0.25;
 	o.ior = 1.7;
-	run(&samples, &o, &r);
+	run_fit(&samples, &o, &r);
 	check_abs(r.model.ndf.sigma_x, 0.25, 0, "fixed sigma");
 	check_abs(r.model.n, 1.7, 0, "fixed ior");
 	o.diffuse = false;
-	run(&samples, &o, &r);
+	run_fit(&samples, &o, &r);
 	check_abs(r.model.kd[0] + r.model.kd[1] + r.model.kd[2], 0, 0, "no diffuse");
 	o.diffuse = true;
 	o.gray = true;
-	run(&samples, &o, &gray);
+	run_fit(&samples, &o, &gray);
 	assert_true(gray.model.kd[0] == gray.model.kd[1] && gray.model.ks[0] == gray.model.ks[2]);
 	o.gray = false;
 	o.specular = false;
-	run(&samples, &o, &lambert);
+	run_fit(&samples, &o, &lambert);
 	check_abs(lambert.model.ks[0] + lambert.model.ks[1] + lambert.model.ks[2], 0, 0, "no specular");
 	assert_true(lambert.error > r.error || lambert.error > gray.error);
 	assert_int_equal(lambert.evaluations, 1);

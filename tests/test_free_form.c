@@ -4,17 +4,7 @@
 #include "fit.h"
 #include "free_form.h"
 #include "make_table.h"
-
-static void run(const struct samples *samples, const struct fit_options *options, struct fit_result *results)
-{
-	struct fit_context *context;
-	struct error error = {""};
-
-	assert_int_equal(fit_context_new(&context, samples->n_phi_d, options), STATUS_OK);
-	if (fit_run(context, samples, options, results, &error) != STATUS_OK)
-		fail_msg("fit: %s", error.text);
-	fit_context_free(context);
-}
+#include "run_fit.h"
 
 /* A lobe of its own shape, neither STD nor GGX nor Beckmann: a narrow one on a wide one. */
 static struct samples made(enum bins bins)
@@ -44,7 +34,7 @@ static void check_floor(enum bins bins)
 	o.max_theta = 70;
 	o.threads = 2;
 	o.ndf[o.n_ndf++] = ndf_find("pl");
-	run(&samples, &o, r);
+	run_fit(&samples, &o, r);
 	assert_non_null(r[3].pwl);
 	assert_ptr_equal(r[3].model.ndf.pwl, r[3].pwl);
 	for (int n = 0; n < 3; n++) {

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* run_fit - a whole fit of a table in memory, which has to succeed. */
+#ifndef RUN_FIT_H
+#define RUN_FIT_H
+
+#include "check.h"
+#include "fit.h"
+
+static inline void run_fit(const struct samples *samples, const struct fit_options *options, struct fit_result *results)
+{
+	struct fit_context *context;
+	struct error error = {""};
+
+	assert_int_equal(fit_context_new(&context, samples->n_phi_d, options), STATUS_OK);
+	if (fit_run(context, samples, options, results, &error) != STATUS_OK)
+		fail_msg("fit: %s", error.text);
+	fit_context_free(context);
+}
+
+#endif
