@@ -18,11 +18,13 @@ quiet = $(if $(V),,@echo '  $(1)	$@';)
 warnings := -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes $(WERROR)
 # errno and floating-point traps are not used by the mathematics; without them loops vectorise.
 fpflags := -fno-math-errno -fno-trapping-math -ffp-contract=off
-ALL_CFLAGS = -std=c11 -D_GNU_SOURCE $(warnings) $(OPT) -fopenmp $(fpflags) -Isrc -Idata_readers -Ifit \
+ALL_CFLAGS = -std=c11 -D_GNU_SOURCE $(warnings) $(OPT) -fopenmp $(fpflags) $(addprefix -I,$(folders)) \
 	$(pkg_cflags) -DSTDFIT_VERSION='"$(VERSION)"' $(CFLAGS_$(basename $(@F))) $(CFLAGS)
 LIBS = $(pkg_libs) -lm
 
-lib_sources := $(wildcard src/*.c) $(wildcard data_readers/*.c) $(filter-out fit/main.c,$(wildcard fit/*.c))
+# Each uses only those before it.
+folders := src data_readers fit fit/program
+lib_sources := $(filter-out fit/program/main.c,$(foreach folder,$(folders),$(wildcard $(folder)/*.c)))
 lib_objects := $(lib_sources:%.c=$(BUILD)/%.o)
 
 # The kernel's loops want vectors; on x86-64 it is compiled a second time for AVX2 and chosen at run time.
@@ -39,7 +41,7 @@ test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 
 all: $(BUILD)/stdfit
 
-$(BUILD)/stdfit: $(BUILD)/fit/main.o $(lib_objects)
+$(BUILD)/stdfit: $(BUILD)/fit/program/main.o $(lib_objects)
 	$(call quiet,LD)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS)
 
 $(BUILD)/%.o: %.c Makefile
@@ -90,4 +92,4 @@ clean:
 
 .PHONY: all setup check run-tests asan ubsan bench figures demo clean
 
--include $(lib_objects:.o=.d) $(BUILD)/fit/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))
+-include $(lib_objects:.o=.d) $(BUILD)/fit/program/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))

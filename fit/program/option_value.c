@@ -99,7 +99,7 @@ const struct option_spec option_specs[] = {
 	{NULL, 0, KIND_ON, 0, NOT_RECORDED, NULL, NULL, 0, 0, 0},
 };
 
-_Static_assert(sizeof option_specs / sizeof *option_specs <= OPTIONS_MAX, "struct options.given has a bit per option");
+_Static_assert(sizeof option_specs / sizeof *option_specs <= OPTIONS_MAX, "struct options.given has a place per option");
 
 const char *option_choice(enum option_kind kind, int i)
 {

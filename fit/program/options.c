@@ -219,7 +219,7 @@ static int spec_of_letter(enum command command, int letter)
 static int take_option(struct options *options, int i, const char *text)
 {
 	struct error error;
-	options->given |= UINT64_C(1) << i;
+	options->given[i] = true;
 	if (!option_parse(options, &option_specs[i], text, &error))
 		return -1;
 	char shown[TEXT_QUOTE_SIZE];
@@ -345,7 +345,7 @@ int options_parse(struct options *options, enum command command, int argc, char 
 bool options_given(const struct options *options, const char *name)
 {
 	for (int i = 0; option_specs[i].name; i++)
-		if (options->given & UINT64_C(1) << i && !strcmp(option_specs[i].name, name))
+		if (options->given[i] && !strcmp(option_specs[i].name, name))
 			return true;
 	return false;
 }
@@ -356,7 +356,7 @@ const char *options_given_beside(const struct options *options, const char *cons
 		const char *const *at = expected;
 		while (*at && strcmp(*at, option_specs[i].name))
 			at++;
-		if (!*at && options->given & UINT64_C(1) << i)
+		if (!*at && options->given[i])
 			return option_specs[i].name;
 	}
 	return NULL;

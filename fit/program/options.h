@@ -7,6 +7,8 @@
 #include "commands.h"
 #include "report.h"
 
+enum { OPTIONS_MAX = 128 }; /* rows of the option table, at most */
+
 struct options {
 	struct fit_options fit;
 	enum command command;
@@ -27,7 +29,7 @@ struct options {
 	atomic_bool *cancel;
 	char **path; /* what is no option, in the order given */
 	int n_paths;
-	uint64_t given; /* a bit per row of the option table */
+	bool given[OPTIONS_MAX]; /* per row of the option table */
 };
 
 /* options_parse - reads a command's arguments into *options; argv is reordered and stays borrowed.

@@ -47,8 +47,7 @@ struct option_spec {
 	double min, max;
 };
 
-enum { OPTIONS_MAX = 64 };
-extern const struct option_spec option_specs[]; /* ends with a row whose name is NULL; fewer than OPTIONS_MAX */
+extern const struct option_spec option_specs[]; /* ends with a row whose name is NULL; at most OPTIONS_MAX with it */
 
 /* option_choice - the i-th of the names that a value of this kind can have; NULL beyond the last. */
 const char *option_choice(enum option_kind kind, int i);
