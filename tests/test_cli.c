@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program itself: exit codes, both streams, bad input, batches, kill and resume. Runs $STDFIT or build/stdfit. */
-#include "check.h"
-#include "result.h"
+#include "run_program.h"
 
-#include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <time.h>
-#include <unistd.h>
 
 enum { MERL_SIZE = 34992012 };
 
@@ -17,128 +12,6 @@ enum { MERL_SIZE = 34992012 };
 #define CHEAP "--ndf ggx,beckmann --sigma 0.2 --ior 1.5 --max-theta 20"
 /* One that never ends by itself. */
 #define ENDLESS "--ndf ggx --starts 100000"
-
-static char directory[] = "/tmp/stdfit-cli-XXXXXX";
-
-/* What the last run left. */
-static struct {
-	int code; /* 128 + signal when killed by one */
-	char *out, *err;
-} last;
-
-static char *slurp(const char *path)
-{
-	char *text = NULL;
-	size_t size = 0;
-	FILE *file = fopen(path, "rb"), *memory = open_memstream(&text, &size);
-	assert_non_null(memory);
-	if (!file)
-		fail_msg("%s: %s", path, strerror(errno));
-	for (int c; (c = fgetc(file)) != EOF;)
-		fputc(c, memory);
-	fclose(file);
-	assert_int_equal(fclose(memory), 0);
-	return text;
-}
-
-/* Starts a shell command in the temporary directory; `exec` in it makes the process the program itself. */
-static pid_t start(const char *command)
-{
-	const pid_t pid = fork();
-	assert_true(pid >= 0);
-	if (pid == 0) {
-		execl("/bin/sh", "sh", "-c", command, (char *)NULL);
-		_exit(127);
-	}
-	return pid;
-}
-
-static int end(pid_t pid)
-{
-	int status;
-	while (waitpid(pid, &status, 0) < 0)
-		assert_int_equal(errno, EINTR);
-	return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
-}
-
-/* Runs a shell command and keeps its code and streams in `last`. */
-static void shell(const char *command)
-{
-	char *whole;
-	assert_true(asprintf(&whole, "{ %s\n} >stdout 2>stderr", command) > 0);
-	free(last.out);
-	free(last.err);
-	last.code = end(start(whole));
-	last.out = slurp("stdout");
-	last.err = slurp("stderr");
-	free(whole);
-}
-
-/* Runs the program with these arguments. */
-static void stdfit(const char *arguments)
-{
-	char *command;
-	assert_true(asprintf(&command, "exec \"$STDFIT\" %s", arguments) > 0);
-	shell(command);
-	free(command);
-}
-
-static size_t count_lines(const char *text)
-{
-	size_t n = 0;
-	for (; *text; text++)
-		n += *text == '\n';
-	return n;
-}
-
-#define expect_code(wanted) expect_code_at(wanted, __LINE__)
-static void expect_code_at(int wanted, int line)
-{
-	if (last.code != wanted)
-		fail_msg("line %d: exit code %d, expected %d; standard error: %s", line, last.code, wanted, last.err);
-}
-
-/* The run ended with this code, one line on standard error that begins "stdfit: " and has `part`. */
-#define expect_error(code, part) expect_error_at(code, part, __LINE__)
-static void expect_error_at(int code, const char *part, int line)
-{
-	expect_code_at(code, line);
-	if (count_lines(last.err) != 1 || strncmp(last.err, "stdfit: ", 8) != 0 || !strstr(last.err, part))
-		fail_msg("line %d: expected one line with '%s' on standard error, found: %s", line, part, last.err);
-}
-
-#define expect_out(part) expect_part(last.out, part, __LINE__)
-static void expect_part(const char *text, const char *part, int line)
-{
-	if (!strstr(text, part))
-		fail_msg("line %d: expected '%s' in: %.2000s", line, part, text);
-}
-
-static struct csv_table read_table(const char *path)
-{
-	struct csv_table table = csv_table_make(result_columns, RESULT_COLUMNS);
-	struct error error;
-	if (csv_table_read(&table, path, RESULT_COLUMNS, NULL, &error))
-		fail_msg("%s", error.text);
-	return table;
-}
-
-/* The table as text, without what differs between runs. */
-static char *without_seconds(const char *path)
-{
-	struct csv_table table = read_table(path);
-	char *text = NULL, empty[] = "";
-	size_t size;
-	FILE *file = open_memstream(&text, &size);
-	assert_non_null(file);
-	for (size_t i = 0; i < table.n_rows; i++) {
-		table.row[i][RESULT_SECONDS] = empty;
-		csv_write_row(file, table.row[i], RESULT_COLUMNS);
-	}
-	assert_int_equal(fclose(file), 0);
-	csv_table_free(&table);
-	return text;
-}
 
 /* A file of this header and size, whose other bytes are zero (and take no room). */
 static void make_file(const char *path, const int32_t n[3], off_t size)
@@ -177,12 +50,8 @@ static const int32_t sound[3] = {90, 90, 180};
 static int set_up(void **state)
 {
 	(void)state;
-	const char *given = getenv("STDFIT");
-	char *program = realpath(given ? given : "build/stdfit", NULL);
-	if (!program || setenv("STDFIT", program, 1) || !mkdtemp(directory) || chdir(directory))
+	if (!enter_directory())
 		return -1;
-	free(program);
-	alarm(300); /* a hang ends */
 	shell("exec \"$STDFIT\" synth a.binary --ndf ggx --sigma 0.2 --ior 1.5 --kd 0.3,0.2,0.1 --ks 0.5\n");
 	if (last.code)
 		return -1;
@@ -194,15 +63,7 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
 	(void)state;
-	free(last.out);
-	free(last.err);
-	last.out = last.err = NULL;
-	const pid_t pid = fork();
-	if (pid == 0) {
-		execlp("rm", "rm", "-rf", directory, (char *)NULL);
-		_exit(127);
-	}
-	return end(pid);
+	return leave_directory();
 }
 
 static void help_and_version(void **state)
@@ -529,19 +390,6 @@ static void threads_change_nothing(void **state)
 	free(first);
 }
 
-/* Waits until the file has this many lines, or the process is gone. */
-static void wait_for_lines(const char *path, size_t lines)
-{
-	for (bool there = false; !there;) {
-		nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
-		if (access(path, F_OK) == 0) {
-			char *text = slurp(path);
-			there = count_lines(text) >= lines;
-			free(text);
-		}
-	}
-}
-
 static void kill_and_resume(void **state)
 {
 	(void)state;
@@ -704,14 +552,6 @@ static void a_reader_that_is_gone(void **state)
 	char *err = slurp("stderr");
 	assert_string_equal(err, "stdfit: cannot write standard output: Broken pipe\n");
 	free(err);
-}
-
-static void write_text(const char *path, const char *text)
-{
-	FILE *file = fopen(path, "w");
-	assert_non_null(file);
-	fputs(text, file);
-	assert_int_equal(fclose(file), 0);
 }
 
 static void compare_tables(void **state)
