@@ -271,7 +271,7 @@ static const struct ndf_class *refuses_gamma(const struct fit_options *fit)
 }
 
 /* Combinations in which some option would be ignored, or nothing could come out. */
-static int check_fit(const struct options *options)
+int options_check_fit(const struct options *options)
 {
 	const struct fit_options *fit = &options->fit;
 	if (!fit->diffuse && !fit->specular)
@@ -338,7 +338,7 @@ int options_parse(struct options *options, enum command command, int argc, char 
 	options->fit.cancel = cancel;
 	if (!options->n_paths)
 		return options_usage(command, "expected %s, found nothing", commands[command].arguments);
-	return command == COMMAND_FIT || command == COMMAND_COMPARE || command == COMMAND_BENCH ? check_fit(options)
+	return command == COMMAND_FIT || command == COMMAND_COMPARE || command == COMMAND_BENCH ? options_check_fit(options)
 												: -1;
 }
 

@@ -51,6 +51,9 @@ char *options_text(const struct options *options);
  * Returns -1, or EXIT_USAGE when they describe none (told on standard error). */
 MUST_CHECK int options_model(const struct options *options, struct cook_torrance *model);
 
+/* options_check_fit - whether the options of a fit go together. Returns -1, or EXIT_USAGE, told. */
+MUST_CHECK int options_check_fit(const struct options *options);
+
 /* options_show - what a command prints on standard output: JSON if asked for, readable text if asked for or on a
  * terminal, else CSV. With -o only a terminal or --table gets anything. */
 enum show options_show(const struct options *options);
