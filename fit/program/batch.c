@@ -250,7 +250,7 @@ int batch_run(struct batch *batch)
 	pthread_t *thread = calloc((size_t)n_workers + 1, sizeof(*thread));
 	run.finished = calloc(batch->n + 1, sizeof(*run.finished));
 	size_t n_failed = 0;
-	bool stopped = true;
+	bool stopped = batch->n > 0;
 	const int started = thread && run.finished ? start_threads(&run, thread, n_workers) : 0;
 	if (started)
 		stopped = hand_on(&run, &n_failed);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit compare - the NDFs side by side: errors per material, and what they come to in all. */
-#include "atomic_file.h"
 #include "batch.h"
 #include "report.h"
 #include "store.h"
@@ -9,7 +8,6 @@
 #include <gsl/gsl_statistics_double.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 /* Columns: material, one error per NDF, winner, gains, distances from the floor. */
 enum { MOST_VALUES = 2 * FIT_NDFS_MAX + 2, COLUMNS_MAX = MOST_VALUES + 2, NAME_SIZE = 64 };
@@ -208,18 +206,10 @@ static void comparison_free(struct comparison *c)
 
 static enum status write_output(const struct options *options, const struct csv_table *table, struct error *error)
 {
-	struct atomic_file file;
-	if (options_show(options) != SHOW_NOTHING)
-		report_output(table, options_show(options), report_table);
+	report_output(table, options_show(options), report_table);
 	if (!options->output)
 		return STATUS_OK;
-	enum status status = store_backup(options->output, error);
-	if (!status)
-		status = atomic_file_open(&file, options->output, error);
-	if (status)
-		return status;
-	(options->json ? report_json : report_csv)(file.stream, table);
-	return atomic_file_commit(&file, error);
+	return store_write(options->output, table, options->json ? report_json : report_csv, error);
 }
 
 /* Compares the rows, which get reordered, and writes the outcome. */
@@ -301,12 +291,6 @@ static int compare_fits(const struct options *options)
 	return code == EXIT_DONE && (bad || status) ? EXIT_FAILED : code;
 }
 
-static bool is_table(const char *path)
-{
-	const size_t length = strlen(path);
-	return length > 4 && !strcasecmp(path + length - 4, ".csv");
-}
-
 int cmd_compare(int argc, char **argv, atomic_bool *cancel)
 {
 	struct options options;
@@ -314,7 +298,7 @@ int cmd_compare(int argc, char **argv, atomic_bool *cancel)
 	if (code >= 0)
 		return code;
 	for (int i = 0; i < options.n_paths; i++)
-		if (is_table(options.path[i])) {
+		if (csv_is_name(options.path[i])) {
 			char *path = options.path[0];
 			options.path[0] = options.path[i];
 			options.path[i] = path;

@@ -3,10 +3,12 @@
 #include "atomic_file.h"
 #include "batch.h"
 #include "report.h"
+#include "text_quote.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 struct sink {
 	const struct options *options;
@@ -65,19 +67,6 @@ static bool file_done(void *user, struct batch_file *file)
 	return !sink->broken;
 }
 
-/* Writes all rows as JSON in the place of an older file, which is kept beside it. */
-static enum status write_json(struct sink *sink)
-{
-	struct atomic_file file;
-	enum status status = store_backup(sink->options->output, &sink->error);
-	if (!status)
-		status = atomic_file_open(&file, sink->options->output, &sink->error);
-	if (status)
-		return status;
-	report_json(file.stream, &sink->rows);
-	return atomic_file_commit(&file, &sink->error);
-}
-
 /* What is written when all files are done, or what could be done of them. */
 static enum status finish(struct sink *sink, bool complete)
 {
@@ -85,8 +74,8 @@ static enum status finish(struct sink *sink, bool complete)
 		return STATUS_IO;
 	if (sink->show == SHOW_JSON)
 		report_json(stdout, &sink->rows);
-	if (sink->options->json && sink->options->output && sink->rows.n_rows)
-		return write_json(sink);
+	if (sink->options->json && sink->options->output && (sink->rows.n_rows || !sink->batch->n))
+		return store_write(sink->options->output, &sink->rows, report_json, &sink->error);
 	if (sink->stored && complete)
 		return store_rewrite(&sink->store, &sink->rows, &sink->error);
 	return STATUS_OK;
@@ -109,6 +98,11 @@ static int run(struct sink *sink, struct batch *batch)
 	batch->done = file_done;
 	batch->user = sink;
 	int code = batch_run(batch);
+	/* The table of an empty share is one, too. */
+	if (!batch->n && sink->stored && store_begin(&sink->store, &sink->error)) {
+		sink->broken = true;
+		code = EXIT_FAILED;
+	}
 	if (!sink->broken && finish(sink, code != EXIT_INTERRUPTED)) {
 		sink->broken = true;
 		code = EXIT_FAILED;
@@ -153,6 +147,30 @@ static int run_traced(struct sink *sink, struct batch *batch)
 	return code == EXIT_DONE ? EXIT_FAILED : code;
 }
 
+/* As files_collect(), and of these the share that was asked for. Where something is not there (a disk that is not
+ * mounted), the list and so the shares would not be those that the others fit: then there are none. */
+static int collect(const struct options *options, struct files *files)
+{
+	const bool sharing = options->shard.n > 0;
+	int missing = 0;
+	*files = (struct files){0};
+	for (int i = 0; i < options->n_paths && sharing; i++)
+		if (access(options->path[i], F_OK)) {
+			char name[TEXT_QUOTE_SIZE];
+			text_quote(options->path[i], name, sizeof name);
+			report_error("cannot read '%s': %s", name, strerror(errno));
+			missing++;
+		}
+	if (missing)
+		return missing;
+	const int bad = files_collect(files, options->path, options->n_paths, options->recursive);
+	if (sharing && bad > 0)
+		files_free(files);
+	if (sharing && !bad)
+		files_keep_shard(files, options->shard);
+	return bad;
+}
+
 int cmd_fit(int argc, char **argv, atomic_bool *cancel)
 {
 	struct options options;
@@ -160,7 +178,7 @@ int cmd_fit(int argc, char **argv, atomic_bool *cancel)
 	if (code >= 0)
 		return code;
 	struct files files;
-	const int bad = files_collect(&files, options.path, options.n_paths, options.recursive);
+	const int bad = collect(&options, &files);
 	struct batch batch;
 	if (bad < 0 || batch_init(&batch, &options, &files)) {
 		files_free(&files);
@@ -171,7 +189,8 @@ int cmd_fit(int argc, char **argv, atomic_bool *cancel)
 			    .show = options_show(&options),
 			    .stored = options.output && !options.json,
 			    .rows = csv_table_make(result_columns, RESULT_COLUMNS)};
-	code = !files.n ? EXIT_FAILED : options.trace ? run_traced(&sink, &batch) : run(&sink, &batch);
+	const bool nothing = !files.n && (bad || !options.shard.n);
+	code = nothing ? EXIT_FAILED : options.trace ? run_traced(&sink, &batch) : run(&sink, &batch);
 	csv_table_free(&sink.rows);
 	if (sink.stored)
 		store_close(&sink.store);

@@ -13,11 +13,21 @@ enum {
 	EXIT_INTERRUPTED = 130,
 };
 
-enum command { COMMAND_FIT, COMMAND_COMPARE, COMMAND_BENCH, COMMAND_EVAL, COMMAND_INFO, COMMAND_SYNTH, COMMAND_COUNT };
+enum command {
+	COMMAND_FIT,
+	COMMAND_COMPARE,
+	COMMAND_MERGE,
+	COMMAND_BENCH,
+	COMMAND_EVAL,
+	COMMAND_INFO,
+	COMMAND_SYNTH,
+	COMMAND_COUNT
+};
 
 /* Each takes argv[0] = its own name and returns the exit code. Setting *cancel stops it at the next occasion. */
 int cmd_fit(int argc, char **argv, atomic_bool *cancel);
 int cmd_compare(int argc, char **argv, atomic_bool *cancel);
+int cmd_merge(int argc, char **argv, atomic_bool *cancel);
 int cmd_bench(int argc, char **argv, atomic_bool *cancel);
 int cmd_eval(int argc, char **argv, atomic_bool *cancel);
 int cmd_info(int argc, char **argv, atomic_bool *cancel);

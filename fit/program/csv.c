@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* No result table comes near this; it keeps a wrong file from filling the memory. */
 enum { FILE_SIZE_MAX = 256 * 1024 * 1024 };
@@ -68,6 +69,12 @@ enum status csv_table_move(struct csv_table *table, struct csv_table *from)
 	from->n_rows = 0;
 	csv_table_free(from);
 	return STATUS_OK;
+}
+
+bool csv_is_name(const char *path)
+{
+	const size_t length = strlen(path);
+	return length > 4 && !strcasecmp(path + length - 4, ".csv");
 }
 
 const char *csv_number(char text[CSV_NUMBER_SIZE], double x)

@@ -42,6 +42,9 @@ MUST_CHECK enum status csv_table_read(struct csv_table *table, const char *path,
 void csv_write_header(FILE *file, const struct csv_column *column, int n_columns);
 void csv_write_row(FILE *file, char *const *cell, int n_columns);
 
+/* csv_is_name - whether a file of this name is a table: it ends in .csv, in letters of either case. */
+bool csv_is_name(const char *path);
+
 /* csv_number - x in the fewest of 15, 16 or 17 digits that read back exactly; "" for NaN; "inf", "-inf". */
 enum { CSV_NUMBER_SIZE = 32 };
 const char *csv_number(char text[CSV_NUMBER_SIZE], double x);

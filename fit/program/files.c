@@ -134,6 +134,31 @@ int files_collect(struct files *files, char *const *path, int n_paths, bool recu
 	return -1;
 }
 
+static int path_order(const void *a, const void *b)
+{
+	return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+void files_sort(struct files *files)
+{
+	if (files->n)
+		qsort(files->path, files->n, sizeof(*files->path), path_order);
+}
+
+void files_keep_shard(struct files *files, struct shard shard)
+{
+	const size_t n = (size_t)shard.n;
+	size_t kept = 0;
+	files_sort(files);
+	for (size_t i = 0; i < files->n; i++) {
+		if (i % n == (size_t)shard.i - 1)
+			files->path[kept++] = files->path[i];
+		else
+			free(files->path[i]);
+	}
+	files->n = kept;
+}
+
 void files_free(struct files *files)
 {
 	for (size_t i = 0; i < files->n; i++)

@@ -17,4 +17,17 @@ struct files {
 int files_collect(struct files *files, char *const *path, int n_paths, bool recursive);
 void files_free(struct files *files);
 
+/* files_sort - puts them in the order of their bytes, whatever the locale and the command line's order. */
+void files_sort(struct files *files);
+
+/* struct shard - share i of n, i = 1 .. n. */
+struct shard {
+	int i, n;
+};
+/* files_keep_shard - leaves the files i, i + n, i + 2n ... of the sorted list. So the shares depend on nothing but the
+ * names, differ by one file at most in size, and together are all files, each once. A file that is added or removed
+ * moves others to another share; a hash of the names would not, but some shares would have twice as many files as
+ * others. May leave none. */
+void files_keep_shard(struct files *files, struct shard shard);
+
 #endif

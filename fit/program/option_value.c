@@ -11,6 +11,7 @@
 
 #define FIT (1u << COMMAND_FIT)
 #define COMPARE (1u << COMMAND_COMPARE)
+#define MERGE (1u << COMMAND_MERGE)
 #define BENCH (1u << COMMAND_BENCH)
 #define EVAL (1u << COMMAND_EVAL)
 #define INFO (1u << COMMAND_INFO)
@@ -24,14 +25,17 @@ const struct option_spec option_specs[] = {
 	{"output", 'o', KIND_TEXT, FIT, NOT_RECORDED, "FILE",
 	 "write the table there; an older FILE becomes FILE~, with --resume only if it has rows to redo", AT(output), 0,
 	 0},
-	{"output", 'o', KIND_TEXT, COMPARE, NOT_RECORDED, "FILE", "write the table there; an older FILE becomes FILE~",
-	 AT(output), 0, 0},
-	{"json", 0, KIND_ON, SEARCHES | EVAL | INFO, NOT_RECORDED, NULL, "JSON instead of CSV", AT(json), 0, 0},
-	{"table", 0, KIND_ON, SEARCHES | EVAL | INFO, NOT_RECORDED, NULL,
+	{"output", 'o', KIND_TEXT, COMPARE | MERGE, NOT_RECORDED, "FILE",
+	 "write the table there; an older FILE becomes FILE~", AT(output), 0, 0},
+	{"json", 0, KIND_ON, SEARCHES | MERGE | EVAL | INFO, NOT_RECORDED, NULL, "JSON instead of CSV", AT(json), 0, 0},
+	{"table", 0, KIND_ON, SEARCHES | MERGE | EVAL | INFO, NOT_RECORDED, NULL,
 	 "a readable table on standard output even if that is no terminal", AT(readable), 0, 0},
 	{"resume", 0, KIND_ON, FIT, NOT_RECORDED, NULL,
 	 "keep the rows of -o FILE that were made from the same bytes with the same options", AT(resume), 0, 0},
-	{"recursive", 'r', KIND_ON, FITS, NOT_RECORDED, NULL, "directories: take the files below them too",
+	{"shard", 0, KIND_SHARD, FIT, NOT_RECORDED, "I/N",
+	 "fit only share I of N of the files: of their sorted list every N-th, beginning with the I-th", AT(shard), 1,
+	 100000},
+	{"recursive", 'r', KIND_ON, FITS | MERGE, NOT_RECORDED, NULL, "directories: take the files below them too",
 	 AT(recursive), 0, 0},
 	{"quiet", 'q', KIND_ON, SEARCHES, NOT_RECORDED, NULL, "no progress line, no summary", AT(quiet), 0, 0},
 	{"threads", 0, KIND_INT, SEARCHES | MODEL, NOT_RECORDED, "N", "threads; changes no result", AT(fit.threads), 1,
@@ -99,7 +103,8 @@ const struct option_spec option_specs[] = {
 	{NULL, 0, KIND_ON, 0, NOT_RECORDED, NULL, NULL, 0, 0, 0},
 };
 
-_Static_assert(sizeof option_specs / sizeof *option_specs <= OPTIONS_MAX, "struct options.given has a place per option");
+_Static_assert(sizeof option_specs / sizeof *option_specs <= OPTIONS_MAX,
+	       "struct options.given has a place per option");
 
 const char *option_choice(enum option_kind kind, int i)
 {
@@ -196,6 +201,21 @@ static enum status parse_seed(const char *text, uint64_t *value, struct error *e
 	if (text[strspn(text, "0123456789")] || end == text || errno)
 		return error_set(error, STATUS_DOMAIN, "expected a whole number from 0 to %" PRIu64, UINT64_MAX);
 	*value = x;
+	return STATUS_OK;
+}
+
+static enum status parse_shard(const struct option_spec *spec, const char *text, struct shard *shard,
+			       struct error *error)
+{
+	char number[CSV_NUMBER_SIZE];
+	struct shard found;
+	const size_t length = strcspn(text, "/");
+	snprintf(number, sizeof number, "%.*s", (int)(length % sizeof number), text);
+	if (length >= sizeof number || !text[length] || parse_int(spec, number, &found.i, NULL) ||
+	    parse_int(spec, text + length + 1, &found.n, NULL) || found.i > found.n)
+		return error_set(error, STATUS_DOMAIN, "expected I/N, share I of N, as 1/4 to 4/4; N at most %g",
+				 spec->max);
+	*shard = found;
 	return STATUS_OK;
 }
 
@@ -304,6 +324,8 @@ enum status option_parse(struct options *options, const struct option_spec *spec
 		return parse_percent(spec, text, value, error);
 	case KIND_RGB:
 		return parse_rgb(spec, text, value, error);
+	case KIND_SHARD:
+		return parse_shard(spec, text, value, error);
 	case KIND_PHI:
 		return parse_phi(text, value, error);
 	case KIND_NDFS:
@@ -344,6 +366,9 @@ void option_write(FILE *file, const struct options *options, const struct option
 	case KIND_INT:
 	case KIND_PHI:
 		fprintf(file, "%d", *(const int *)value);
+		break;
+	case KIND_SHARD:
+		fprintf(file, "%d/%d", ((const struct shard *)value)->i, ((const struct shard *)value)->n);
 		break;
 	case KIND_SEED:
 		fprintf(file, "%" PRIu64, *(const uint64_t *)value);

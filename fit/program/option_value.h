@@ -17,6 +17,7 @@ enum option_kind {
 	KIND_GAMMA,   /* the same, or inf */
 	KIND_PERCENT, /* the same, perhaps with a % behind it */
 	KIND_RGB,     /* double[3], each in [min, max]; one number stands for all three */
+	KIND_SHARD,   /* struct shard, I/N with N up to max */
 	KIND_PHI,     /* int, 180 or 360 */
 	KIND_NDFS,
 	KIND_GAF,

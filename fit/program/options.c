@@ -23,6 +23,13 @@ static const struct {
 			     "Fits MERL files or directories, or takes one result table (FILE.csv) as it is. Shows\n"
 			     "the error of each NDF, the winner, by how much STD's error is lower than GGX's and\n"
 			     "Beckmann's (in % of theirs), then mean, median, worst and wins.\n"},
+	[COMMAND_MERGE] = {"merge", "CSV... [PATH...]", "join the tables of a batch's shares (fit --shard) into one",
+			   "Writes the table that one run over all files would have written. It refuses rows made\n"
+			   "with other options or by another version, rows of the same file and NDF that differ (in\n"
+			   "more than seconds), files that lack an NDF that others have, and what is no whole table\n"
+			   "of stdfit fit. Given the files or directories that were fitted, too, it refuses unless\n"
+			   "each file has its rows, and no other: so no share is missing or unfinished. Equal rows\n"
+			   "may stand in several tables; the seconds are those of the first. Failed rows stay.\n"},
 	[COMMAND_BENCH] =
 		{"bench", "FILE", "error against run time, the default search beside others",
 		 "Fits one NDF to one MERL file, read already, with one algorithm after the other, each alone\n"
@@ -92,7 +99,8 @@ char *options_text(const struct options *options)
 
 static bool has_default(const struct options *defaults, const struct option_spec *spec)
 {
-	if (!spec->argument || spec->kind == KIND_TEXT || spec->kind == KIND_PERCENT || spec->kind == KIND_ALGORITHMS)
+	if (!spec->argument || spec->kind == KIND_TEXT || spec->kind == KIND_PERCENT || spec->kind == KIND_ALGORITHMS ||
+	    spec->kind == KIND_SHARD)
 		return false;
 	const void *value = (const char *)defaults + spec->offset;
 	if (spec->kind == KIND_INT)

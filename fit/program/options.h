@@ -5,6 +5,7 @@
 
 #include "algorithms.h"
 #include "commands.h"
+#include "files.h"
 #include "report.h"
 
 enum { OPTIONS_MAX = 128 }; /* rows of the option table, at most */
@@ -14,6 +15,7 @@ struct options {
 	enum command command;
 	const char *output; /* NULL: standard output */
 	const char *trace;  /* a CSV of the course of each search; NULL: none */
+	struct shard shard; /* .n = 0: all files */
 	bool json, quiet, resume, recursive, readable;
 	double within; /* percent; NaN: every NDF as it is */
 	/* A model, for eval and synth; its sigma, gamma and ior are those of `fit`. */

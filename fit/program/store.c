@@ -38,6 +38,12 @@ enum status store_probe(const char *path, struct error *error)
 	return status;
 }
 
+static bool is_link(const char *path)
+{
+	struct stat info;
+	return !lstat(path, &info) && S_ISLNK(info.st_mode);
+}
+
 /* Gives a regular file the name with ~ behind it, in place of its own or (`both`) beside it. */
 static enum status back_up(const char *path, bool both, struct error *error)
 {
@@ -48,17 +54,34 @@ static enum status back_up(const char *path, bool both, struct error *error)
 	if (!backup)
 		return cannot(error, "write", path, ENOMEM);
 	snprintf(backup, size, "%s~", path);
-	/* Where links are not to be had, the file is away for the moment until the new one takes its place. */
-	const bool done =
-		(both && (!unlink(backup) || errno == ENOENT) && !link(path, backup)) || !rename(path, backup);
+	/* Where hard links are not to be had, the file is away for the moment until the new one takes its place. A
+	 * symbolic link stays, and so does the name of what it points to: that is what gets replaced. */
+	bool done = both && (!unlink(backup) || errno == ENOENT) &&
+		    !linkat(AT_FDCWD, path, AT_FDCWD, backup, AT_SYMLINK_FOLLOW);
+	if (!done && !(both && is_link(path)))
+		done = !rename(path, backup);
 	const enum status status = done ? STATUS_OK : cannot(error, "write", backup, errno);
 	free(backup);
 	return status;
 }
 
-enum status store_backup(const char *path, struct error *error)
+enum status store_write(const char *path, const struct csv_table *table,
+			void (*write)(FILE *file, const struct csv_table *table), struct error *error)
 {
-	return back_up(path, false, error);
+	struct atomic_file file;
+	enum status status = atomic_file_open(&file, path, error);
+	if (status)
+		return status;
+	write(file.stream, table);
+	/* A full disk shows before the older file is touched. */
+	if (fflush(file.stream))
+		file.errnum = errno;
+	else
+		status = back_up(path, true, error);
+	if (!status)
+		return atomic_file_commit(&file, error);
+	atomic_file_abort(&file);
+	return status;
 }
 
 /* The line of a row, or the header line for NULL, newly allocated; NULL when out of memory. */
@@ -106,6 +129,28 @@ static int path_order(const void *a, const void *b)
 	return strcmp(row_a[RESULT_PATH], row_b[RESULT_PATH]);
 }
 
+static enum status foreign_columns(const char *path, const char *what, struct error *error)
+{
+	char name[TEXT_QUOTE_SIZE];
+	text_quote(path, name, sizeof name);
+	return error_set(error, STATUS_FORMAT, "cannot %s '%s': expected the columns of stdfit %s in line 1", what,
+			 name, STDFIT_VERSION);
+}
+
+enum status store_check_columns(const char *path, struct error *error)
+{
+	enum beginning beginning = HEADER_FOREIGN;
+	const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
+	if (fd < 0)
+		return cannot(error, "read", path, errno);
+	const enum status status = look_at_header(fd, &beginning);
+	const int errnum = errno;
+	close(fd);
+	if (status)
+		return cannot(error, "read", path, errnum);
+	return beginning == HEADER_WHOLE ? STATUS_OK : foreign_columns(path, "merge", error);
+}
+
 /* Reads what an earlier run left and cuts off the rest of an interrupted write. */
 static enum status resume_old(struct store *store, struct error *error)
 {
@@ -113,13 +158,8 @@ static enum status resume_old(struct store *store, struct error *error)
 	size_t complete = 0;
 	if (look_at_header(store->fd, &beginning))
 		return cannot(error, "read", store->path, errno);
-	if (beginning == HEADER_FOREIGN) {
-		char name[TEXT_QUOTE_SIZE];
-		text_quote(store->path, name, sizeof name);
-		return error_set(error, STATUS_FORMAT,
-				 "cannot resume '%s': expected the columns of stdfit %s in line 1", name,
-				 STDFIT_VERSION);
-	}
+	if (beginning == HEADER_FOREIGN)
+		return foreign_columns(store->path, "resume", error);
 	store->headed = beginning == HEADER_WHOLE;
 	if (store->headed) {
 		const enum status status = csv_table_read(&store->old, store->path, RESULT_COLUMNS, &complete, error);
@@ -228,19 +268,23 @@ static enum status replace_old(struct store *store, struct error *error)
 	close(store->fd);
 	store->fd = -1;
 	store->replaces = false;
-	const enum status status = store_backup(store->path, error);
+	const enum status status = back_up(store->path, false, error);
 	return status ? status : open_table(store, O_WRONLY | O_CREAT, error);
+}
+
+enum status store_begin(struct store *store, struct error *error)
+{
+	enum status status = store->replaces ? replace_old(store, error) : STATUS_OK;
+	if (!store->headed && !status) {
+		status = append_line(store, NULL, error);
+		store->headed = !status;
+	}
+	return status;
 }
 
 enum status store_append(struct store *store, const struct csv_table *rows, struct error *error)
 {
-	enum status status = STATUS_OK;
-	if (rows->n_rows && store->replaces)
-		status = replace_old(store, error);
-	if (rows->n_rows && !store->headed && !status) {
-		status = append_line(store, NULL, error);
-		store->headed = !status;
-	}
+	enum status status = rows->n_rows ? store_begin(store, error) : STATUS_OK;
 	for (size_t i = 0; i < rows->n_rows && !status; i++)
 		status = append_line(store, rows->row[i], error);
 	return status;

@@ -28,6 +28,8 @@ bool store_has(const struct store *store, const struct result_source *source, co
 /* store_drop_stale - the old rows of source->path for which store_has() does not hold will not be kept. */
 void store_drop_stale(struct store *store, const struct result_source *source);
 
+/* store_begin - writes the header line, if it is not there, as the first row would bring it. */
+MUST_CHECK enum status store_begin(struct store *store, struct error *error);
 /* store_append - writes the rows, each with one write. On failure (STATUS_IO, STATUS_NO_MEMORY) no part of a row is
  * left. */
 MUST_CHECK enum status store_append(struct store *store, const struct csv_table *rows, struct error *error);
@@ -40,7 +42,14 @@ void store_close(struct store *store);
 /* store_probe - fails if `path` could not be written, so that hours of work do not end on that. Changes nothing. */
 MUST_CHECK enum status store_probe(const char *path, struct error *error);
 
-/* store_backup - renames a regular file out of the way, to `path` with ~ behind it. Nothing there: STATUS_OK. */
-MUST_CHECK enum status store_backup(const char *path, struct error *error);
+/* store_check_columns - STATUS_FORMAT unless the file begins with the whole header line of this version, no column more
+ * or less. */
+MUST_CHECK enum status store_check_columns(const char *path, struct error *error);
+
+/* store_write - a whole table of any kind, by report_csv() or report_json(), in the place of an older file, which is kept
+ * as `path` with ~ behind it. On failure the older file stays (where hard links are not to be had,
+ * perhaps under that other name). */
+MUST_CHECK enum status store_write(const char *path, const struct csv_table *table,
+				   void (*write)(FILE *file, const struct csv_table *table), struct error *error);
 
 #endif
