@@ -39,10 +39,20 @@ endif
 test_sources := $(wildcard tests/test_*.c)
 test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 
-all: $(BUILD)/stdfit
+# Made by the program from its own tables; RUN runs it where it is built for another machine, as in RUN=qemu-aarch64.
+manuals := $(BUILD)/stdfit.1 $(BUILD)/completions/stdfit.bash $(BUILD)/completions/_stdfit
+
+all: $(BUILD)/stdfit $(manuals)
 
 $(BUILD)/stdfit: $(BUILD)/fit/program/main.o $(lib_objects)
 	$(call quiet,LD)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS)
+
+$(BUILD)/stdfit.1: print := --man
+$(BUILD)/completions/stdfit.bash: print := --completion bash
+$(BUILD)/completions/_stdfit: print := --completion zsh
+$(manuals): $(BUILD)/stdfit
+	@mkdir -p $(@D)
+	$(call quiet,PRINT)$(RUN) $(BUILD)/stdfit $(print) >$@.part && mv -f $@.part $@
 
 $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit - the program: finds the command, catches signals, ends. */
 #include "commands.h"
+#include "completion.h"
+#include "manual.h"
 #include "options.h"
 #include "report.h"
 
@@ -60,18 +62,32 @@ static void print_version(void)
 	       major, minor, bugfix, gsl_version, xxh / 10000, xxh / 100 % 100, xxh % 100);
 }
 
+static int completion(const char *shell)
+{
+	if (completion_write(stdout, shell))
+		return EXIT_DONE;
+	report_error("expected --completion bash or --completion zsh");
+	return EXIT_USAGE;
+}
+
 static int dispatch(int argc, char **argv)
 {
 	static int (*const run[COMMAND_COUNT])(int, char **, atomic_bool *) = {
-		[COMMAND_FIT] = cmd_fit,   [COMMAND_COMPARE] = cmd_compare, [COMMAND_BENCH] = cmd_bench,
-		[COMMAND_MERGE] = cmd_merge,
-		[COMMAND_EVAL] = cmd_eval, [COMMAND_INFO] = cmd_info,       [COMMAND_SYNTH] = cmd_synth,
+		[COMMAND_FIT] = cmd_fit,     [COMMAND_COMPARE] = cmd_compare, [COMMAND_BENCH] = cmd_bench,
+		[COMMAND_MERGE] = cmd_merge, [COMMAND_EVAL] = cmd_eval,       [COMMAND_INFO] = cmd_info,
+		[COMMAND_SYNTH] = cmd_synth,
 	};
 	const char *first = argc > 1 ? argv[1] : "";
 	if (!strcmp(first, "--version")) {
 		print_version();
 		return EXIT_DONE;
 	}
+	if (!strcmp(first, "--man")) {
+		manual_write(stdout);
+		return EXIT_DONE;
+	}
+	if (!strcmp(first, "--completion"))
+		return completion(argc > 2 ? argv[2] : "");
 	if (!strcmp(first, "--help") || !strcmp(first, "-h")) {
 		options_overview();
 		return EXIT_DONE;

@@ -121,6 +121,8 @@ const char *option_choice(enum option_kind kind, int i)
 		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
 	case KIND_BINS:
 		return i < BINS_COUNT ? bins_name((enum bins)i) : NULL;
+	case KIND_PHI:
+		return i < 2 ? (i ? "360" : "180") : NULL;
 	case KIND_ALGORITHM:
 	case KIND_ALGORITHMS:
 		return i < ALGORITHM_COUNT ? algorithm_name(algorithm_at(i)) : NULL;
@@ -403,5 +405,35 @@ void option_write(FILE *file, const struct options *options, const struct option
 	case KIND_ALGORITHMS:
 		write_algorithms(file, options);
 		break;
+	}
+}
+
+bool option_applies(const struct option_spec *spec, enum command command)
+{
+	return spec->commands & 1u << command;
+}
+
+static bool has_default(const struct options *defaults, const struct option_spec *spec)
+{
+	if (!spec->argument || spec->kind == KIND_TEXT || spec->kind == KIND_PERCENT || spec->kind == KIND_ALGORITHMS ||
+	    spec->kind == KIND_SHARD)
+		return false;
+	const void *value = (const char *)defaults + spec->offset;
+	if (spec->kind == KIND_INT)
+		return *(const int *)value >= spec->min;
+	/* A free number is a default of a fit; a model needs one. */
+	return spec->recorded != NOT_RECORDED || (spec->kind != KIND_NUMBER && spec->kind != KIND_GAMMA) ||
+	       !isnan(*(const double *)value);
+}
+
+void option_describe(FILE *file, const struct options *defaults, const struct option_spec *spec)
+{
+	fputs(spec->help, file);
+	for (int i = 0; option_choice(spec->kind, i); i++)
+		fprintf(file, "%s%s", i ? ", " : ": ", option_choice(spec->kind, i));
+	if (has_default(defaults, spec)) {
+		fputs(" (default: ", file);
+		option_write(file, defaults, spec);
+		fputs(")", file);
 	}
 }

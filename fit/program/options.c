@@ -11,9 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const struct {
-	const char *name, *arguments, *summary, *help;
-} commands[COMMAND_COUNT] = {
+static const struct command_text commands[COMMAND_COUNT] = {
 	[COMMAND_FIT] = {"fit", "PATH...", "fit MERL files",
 			 "Fits a Cook-Torrance model with each NDF to each MERL file. A directory stands for\n"
 			 "every *.binary in it. A terminal shows a readable table, a pipe gets CSV. With -o, rows\n"
@@ -53,9 +51,9 @@ static const struct {
 			   "horizon.\n"},
 };
 
-static bool spec_applies(const struct option_spec *spec, enum command command)
+const struct command_text *options_command(enum command command)
 {
-	return spec->commands & 1u << command;
+	return &commands[command];
 }
 
 static bool is_recorded(const struct options *options, const struct option_spec *spec)
@@ -97,19 +95,6 @@ char *options_text(const struct options *options)
 
 /* Help */
 
-static bool has_default(const struct options *defaults, const struct option_spec *spec)
-{
-	if (!spec->argument || spec->kind == KIND_TEXT || spec->kind == KIND_PERCENT || spec->kind == KIND_ALGORITHMS ||
-	    spec->kind == KIND_SHARD)
-		return false;
-	const void *value = (const char *)defaults + spec->offset;
-	if (spec->kind == KIND_INT)
-		return *(const int *)value >= spec->min;
-	/* A free number is a default of a fit; a model needs one. */
-	return spec->recorded != NOT_RECORDED || (spec->kind != KIND_NUMBER && spec->kind != KIND_GAMMA) ||
-	       !isnan(*(const double *)value);
-}
-
 enum { HELP_WIDTH = 22 };
 
 static void print_option(const struct options *defaults, const struct option_spec *spec)
@@ -117,16 +102,10 @@ static void print_option(const struct options *defaults, const struct option_spe
 	char name[64];
 	snprintf(name, sizeof name, "--%s %s", spec->name, spec->argument ? spec->argument : "");
 	if (spec->letter)
-		printf("  -%c, %-*s%s", spec->letter, HELP_WIDTH, name, spec->help);
+		printf("  -%c, %-*s", spec->letter, HELP_WIDTH, name);
 	else
-		printf("      %-*s%s", HELP_WIDTH, name, spec->help);
-	for (int i = 0; option_choice(spec->kind, i); i++)
-		printf("%s%s", i ? ", " : ": ", option_choice(spec->kind, i));
-	if (has_default(defaults, spec)) {
-		printf(" (default: ");
-		option_write(stdout, defaults, spec);
-		printf(")");
-	}
+		printf("      %-*s", HELP_WIDTH, name);
+	option_describe(stdout, defaults, spec);
 	printf("\n");
 }
 
@@ -137,7 +116,7 @@ static void print_help(const struct options *defaults)
 	       commands[command].name, command == COMMAND_FIT ? "]" : "", commands[command].arguments,
 	       commands[command].help);
 	for (const struct option_spec *spec = option_specs; spec->name; spec++)
-		if (spec_applies(spec, command))
+		if (option_applies(spec, command))
 			print_option(defaults, spec);
 	printf("  -h, %-*sthis text\n", HELP_WIDTH, "--help");
 	printf("\nexit code: 0 done, 1 some file failed, 2 wrong usage, 130 interrupted\n");
@@ -150,7 +129,8 @@ void options_overview(void)
 		printf("  stdfit %-7s %-10s  %s\n", c == COMMAND_FIT ? "[fit]" : commands[c].name,
 		       commands[c].arguments, commands[c].summary);
 	printf("\n`stdfit COMMAND --help` tells its options, `stdfit --version` the versions of the program and its "
-	       "libraries.\n");
+	       "libraries.\n`stdfit --man` writes the manual page, `stdfit --completion bash` and `zsh` what these "
+	       "shells need\nto complete command lines.\n");
 }
 
 enum command options_find_command(const char *name)
@@ -174,7 +154,7 @@ int options_usage(enum command command, const char *format, ...)
 	return EXIT_USAGE;
 }
 
-static struct options options_default(enum command command)
+struct options options_default(enum command command)
 {
 	struct options options = {
 		.fit = fit_options_default(),
@@ -202,7 +182,7 @@ static void fill_getopt(enum command command, struct option *longs, char *letter
 	*letters++ = 'h';
 	*longs++ = (struct option){"help", no_argument, NULL, 'h'};
 	for (int i = 0; option_specs[i].name; i++) {
-		if (!spec_applies(&option_specs[i], command))
+		if (!option_applies(&option_specs[i], command))
 			continue;
 		const int argument = option_specs[i].argument ? required_argument : no_argument;
 		*longs++ = (struct option){option_specs[i].name, argument, NULL, LONG_OPTION + i};
@@ -219,7 +199,7 @@ static void fill_getopt(enum command command, struct option *longs, char *letter
 static int spec_of_letter(enum command command, int letter)
 {
 	int i = 0;
-	while (option_specs[i].letter != letter || !spec_applies(&option_specs[i], command))
+	while (option_specs[i].letter != letter || !option_applies(&option_specs[i], command))
 		i++;
 	return i;
 }

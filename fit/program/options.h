@@ -63,6 +63,16 @@ enum show options_show(const struct options *options);
 /* options_usage - tells on standard error what is wrong with the command line. Returns EXIT_USAGE. */
 int options_usage(enum command command, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* struct command_text - a command's name and its help. */
+struct command_text {
+	const char *name, *arguments, *summary, *help;
+};
+/* options_command - of a command below COMMAND_COUNT. */
+const struct command_text *options_command(enum command command);
+
+/* options_default - what a command starts from. */
+struct options options_default(enum command command);
+
 /* options_overview - the help of the program as a whole, on standard output. */
 void options_overview(void);
 /* options_find_command - the command of this name, COMMAND_COUNT when there is none. */
