@@ -4,84 +4,234 @@
  * sigma. wo lies above the horizon where sin_i sin(2 theta_h) cos(phi) + cos_i cos(2 theta_h) > 0. */
 #include "energy.h"
 #include "quadrature.h"
-
-/* Absolute, of the outer integral; the inner ones have a share of it. The kinks of the V-groove would take for ever. */
-static double tolerance_for(const struct cook_torrance *model)
-{
-	return model->gaf == GAF_V_GROOVE ? 1e-6 : 1e-8;
-}
+#include "smith_table.h"
 
 /* exp(v) down to exp(-18) of the median slope: 1e-15 of the normals lie below. */
 #define V_BELOW 18.0
+/* At this cosine, in units of the median slope, all is as at grazing incidence. */
+#define GRAZING 1e-20
+/* Aimed at for one direction; where many are compared. */
+#define TOLERANCE 1e-8
+#define TOLERANCE_MANY 1e-7
+
+enum { REFINEMENTS = 8 };
 
 struct ring {
 	const struct cook_torrance *model;
+	struct smith_table *G1;
+	double tolerance; /* absolute, of the outer integral; the inner ones have a share of it */
 	struct vec3 wi;
+	double lambda_i;
 	double sin_h, cos_h;
+	double front; /* what all azimuths have in common: D/cos_i dh/(dv dphi), dh = sin_h^2 cos_h dv dphi */
 };
 
-/* f cos_o d wo / (dv dphi), dh = sin_h^2 cos_h dv dphi. */
+/* G of a facet from cos_d and cos_o. */
+static double G_at(const struct ring *ring, double cos_d, struct vec3 wo)
+{
+	const enum gaf gaf = ring->model->gaf;
+	if (gaf == GAF_V_GROOVE)
+		return fmin(1.0, 2.0 * ring->cos_h * fmin(ring->wi.z, wo.z) / cos_d);
+	return gaf_smith(gaf, ring->lambda_i, 1.0 / smith_table_G1(ring->G1, wo) - 1.0);
+}
+
+/* f cos_o d wo / (dv dphi) = F G (wi.h) D/cos_i dh/(dv dphi) */
 static double at_azimuth(double phi, void *params)
 {
 	const struct ring *ring = params;
+	const struct cook_torrance *model = ring->model;
 	const struct vec3 h = {ring->sin_h * cos(phi), ring->sin_h * sin(phi), ring->cos_h};
 	const double cos_d = vec3_dot(ring->wi, h);
 	const struct vec3 wo = vec3_sub(vec3_scale(h, 2.0 * cos_d), ring->wi);
-	const double measure = 4.0 * cos_d * ring->sin_h * ring->sin_h * ring->cos_h;
-	return wo.z > 0.0 ? cook_torrance_lobe(ring->model, ring->wi, wo) * wo.z * measure : 0.0;
+	if (!(wo.z > 0.0))
+		return 0.0;
+	return fresnel_F(model->fresnel, cos_d, model->n, model->k) * G_at(ring, cos_d, wo) * cos_d * ring->front;
+}
+
+/* The azimuth at which wi.h is cos_d, as a bound of [0, end]. */
+static double azimuth_of(const struct ring *ring, double cos_d, double end)
+{
+	const double part = (cos_d - ring->wi.z * ring->cos_h) / (ring->wi.x * ring->sin_h);
+	return part < 1.0 ? fmin(acos(fmax(part, -1.0)), end) : 0.0;
+}
+
+/* Over [0, end]; where the V-groove's G has kinks, piece by piece: it is 1, or cos_o or cos_i decides, by wi.h. */
+static double over_azimuths(struct ring *ring, double end)
+{
+	const double cos_h = ring->cos_h, share = 0.02 * ring->tolerance;
+	double at[4] = {0.0, 0.0, 0.0, end};
+	if (ring->model->gaf == GAF_V_GROOVE && ring->wi.x > 0.0) {
+		const bool wide = cos_h * cos_h > 0.5; /* then between the two bounds neither decides */
+		const double by_i = wide ? 2.0 * cos_h * ring->wi.z : ring->wi.z / cos_h;
+		const double by_o = wide ? by_i / (4.0 * cos_h * cos_h - 1.0) : by_i;
+		at[1] = azimuth_of(ring, by_i, end);
+		at[2] = azimuth_of(ring, by_o, end);
+	}
+	double sum = 0.0;
+	for (int i = 0; i < 3; i++)
+		sum += quadrature_adaptive(at_azimuth, ring, at[i], at[i + 1], share);
+	return sum;
 }
 
 static double at_slope(double v, void *params)
 {
 	struct ring *ring = params;
-	const double tangent = exp(v);
-	ring->cos_h = 1.0 / sqrt(1.0 + tangent * tangent);
-	ring->sin_h = tangent * ring->cos_h;
-	const double sin_2h = 2.0 * ring->sin_h * ring->cos_h;
-	const double cos_2h = (ring->cos_h - ring->sin_h) * (ring->cos_h + ring->sin_h);
-	const double end = acos(fmax(-1.0, fmin(1.0, -ring->wi.z * cos_2h / (ring->wi.x * sin_2h))));
-	return 2.0 * quadrature_adaptive(at_azimuth, ring, 0.0, end, 0.02 * tolerance_for(ring->model));
+	const struct vec3 wi = ring->wi;
+	const double tangent = exp(v), cos_h = 1.0 / sqrt(1.0 + tangent * tangent), sin_h = tangent * cos_h;
+	const double sin_2h = 2.0 * sin_h * cos_h, cos_2h = (cos_h - sin_h) * (cos_h + sin_h);
+	const double end = wi.x > 0.0 ? acos(fmax(-1.0, fmin(1.0, -wi.z * cos_2h / (wi.x * sin_2h)))) : M_PI;
+	const double D = ndf_D(&ring->model->ndf, (struct vec3){sin_h, 0.0, cos_h});
+	ring->sin_h = sin_h;
+	ring->cos_h = cos_h;
+	ring->front = D * sin_h * sin_h * cos_h / wi.z;
+	return 2.0 * over_azimuths(ring, end);
 }
 
-/* ln tan of half an angle */
-static double log_tan_half(double angle)
+/* tan(theta_h) that half of the normals exceed. */
+static double median_slope(const struct ndf *ndf)
 {
-	return log(tan(0.5 * angle));
+	const struct vec3 m = ndf_sample(ndf, 0.0, 0.5);
+	return hypot(m.x, m.y) / m.z;
 }
 
-/* Where all azimuths reach above the horizon, where one last does; the middle of D. */
-static double integrate_slopes(struct ring *ring)
+/* Inserts x into the ascending at[0..n-1], kept inside its ends. */
+static void insert(double at[], int n, double x)
 {
-	const double theta_i = atan2(ring->wi.x, ring->wi.z);
-	const double last = log_tan_half(0.5 * M_PI + theta_i);
-	const double all = fmin(log_tan_half(atan2(ring->wi.z, ring->wi.x)), last);
-	const struct vec3 m = ndf_sample(&ring->model->ndf, 0.0, 0.5);
-	const double middle = fmin(log(m.x / m.z), last);
-	const double at[] = {fmin(middle, all) - V_BELOW, fmin(middle, all), fmax(middle, all), last};
-	double sum = 0.0;
-	for (int i = 0; i < 3; i++)
-		sum += quadrature_adaptive(at_slope, ring, at[i], at[i + 1], tolerance_for(ring->model));
+	x = fmin(fmax(x, at[0]), at[n - 1]);
+	for (; at[n - 1] > x; n--)
+		at[n] = at[n - 1];
+	at[n] = x;
+}
+
+/* Piece by piece, between the middle of D and the theta_h at which all azimuths begin to fail to reach above the horizon;
+ * with the V-groove also where the azimuths of its kinks begin or end. */
+static double integrate_slopes(struct ring *ring, double middle)
+{
+	const double above = atan2(ring->wi.z, ring->wi.x), theta_i = atan2(ring->wi.x, ring->wi.z);
+	const double last = log(tan(0.5 * (0.5 * M_PI + theta_i)));
+	const double kinks[] = {0.5 * above, above, above / 3.0, (0.5 * M_PI + theta_i) / 3.0, 0.25 * M_PI};
+	const int n_kinks = ring->model->gaf == GAF_V_GROOVE ? 5 : 1;
+	double at[8] = {fmin(middle, last) - V_BELOW, last}, sum = 0.0;
+	insert(at, 2, middle);
+	for (int i = 0; i < n_kinks; i++)
+		insert(at, 3 + i, log(tan(kinks[i])));
+	for (int i = 0; i < 2 + n_kinks; i++)
+		sum += quadrature_adaptive(at_slope, ring, at[i], at[i + 1], ring->tolerance);
 	return sum;
+}
+
+/* struct surface - what one model has in common for all directions. */
+struct surface {
+	const struct cook_torrance *model;
+	double median;
+	struct smith_table G1;
+};
+
+static enum status surface_init(struct surface *surface, const struct cook_torrance *model)
+{
+	if (model->ndf.sigma_x != model->ndf.sigma_y)
+		return STATUS_UNSUPPORTED;
+	surface->model = model;
+	surface->median = median_slope(&model->ndf);
+	smith_table_init(&surface->G1, &model->ndf, surface->median);
+	return STATUS_OK;
+}
+
+static double lobe_albedo(struct surface *surface, double cos_i, double tolerance)
+{
+	const double z = fmax(cos_i, GRAZING * fmin(surface->median, 1.0));
+	struct ring ring = {.model = surface->model,
+			    .G1 = &surface->G1,
+			    .tolerance = tolerance,
+			    .wi = {sqrt((1.0 - z) * (1.0 + z)), 0.0, z}};
+	ring.lambda_i = ndf_lambda(&surface->model->ndf, ring.wi);
+	return integrate_slopes(&ring, log(surface->median));
 }
 
 enum status energy_lobe(const struct cook_torrance *model, double cos_i, double *albedo)
 {
-	if (!(cos_i > 0.0 && cos_i <= 1.0))
+	struct surface surface;
+	if (!(cos_i >= 0.0 && cos_i <= 1.0))
 		return STATUS_DOMAIN;
-	if (model->ndf.sigma_x != model->ndf.sigma_y)
-		return STATUS_UNSUPPORTED;
-	struct ring ring = {.model = model, .wi = {sqrt((1.0 - cos_i) * (1.0 + cos_i)), 0.0, cos_i}};
-	*albedo = integrate_slopes(&ring);
-	return STATUS_OK;
+	const enum status status = surface_init(&surface, model);
+	if (status == STATUS_OK)
+		*albedo = lobe_albedo(&surface, cos_i, TOLERANCE);
+	return status;
+}
+
+/* kd + ks lobe */
+static void whole(const struct cook_torrance *model, double lobe, double albedo[3])
+{
+	for (int c = 0; c < 3; c++)
+		albedo[c] = model->kd[c] + model->ks[c] * lobe;
 }
 
 enum status energy_albedo(const struct cook_torrance *model, double cos_i, double albedo[3])
 {
 	double lobe;
 	const enum status status = energy_lobe(model, cos_i, &lobe);
+	if (status == STATUS_OK)
+		whole(model, lobe, albedo);
+	return status;
+}
+
+/* A direction by x = -log2 cot(theta_i). */
+struct direction {
+	double x, lobe;
+};
+
+static double cos_at(double x)
+{
+	const double cot = exp2(-x);
+	return cot / sqrt(1.0 + cot * cot);
+}
+
+static struct direction look(struct surface *surface, double x)
+{
+	return (struct direction){x, lobe_albedo(surface, cos_at(x), TOLERANCE_MANY)};
+}
+
+/* Golden sections of the octaves on either side of a maximum of the coarse looks. */
+static struct direction refine(struct surface *surface, struct direction best)
+{
+	const double golden = 0.38196601125010515;
+	double low = best.x - 1.0, high = best.x + 1.0;
+	for (int i = 0; i < REFINEMENTS; i++) {
+		const bool right = high - best.x > best.x - low;
+		const struct direction next = look(surface, best.x + golden * ((right ? high : low) - best.x));
+		if (next.lobe > best.lobe) {
+			*(right ? &low : &high) = best.x;
+			best = next;
+		} else {
+			*(right ? &high : &low) = next.x;
+		}
+	}
+	return best;
+}
+
+enum status energy_albedo_max(const struct cook_torrance *model, double albedo[3], double *theta_i)
+{
+	struct surface surface;
+	const enum status status = surface_init(&surface, model);
 	if (status != STATUS_OK)
 		return status;
-	for (int c = 0; c < 3; c++)
-		albedo[c] = model->kd[c] + model->ks[c] * lobe;
+	/* From the normal to where all is as at grazing incidence, which for a sharp lobe is close to the horizon only. */
+	const double end = 10.0 - fmin(log2(surface.median), 0.0);
+	const double normal = lobe_albedo(&surface, 1.0, TOLERANCE_MANY);
+	const double grazing = lobe_albedo(&surface, 0.0, TOLERANCE_MANY);
+	struct direction best = {0.0, -1.0}, before = {0.0, normal}, at = look(&surface, -3.0);
+	/* There may be several maxima: one inside and one at either end. */
+	for (double x = -2.0; x < end; x++) {
+		const struct direction next = look(&surface, x);
+		if (at.lobe >= fmax(before.lobe, next.lobe)) {
+			const struct direction top = refine(&surface, at);
+			best = top.lobe > best.lobe ? top : best;
+		}
+		before = at;
+		at = next;
+	}
+	const bool inside = best.lobe > fmax(normal, grazing);
+	whole(model, inside ? best.lobe : fmax(normal, grazing), albedo);
+	*theta_i = inside ? atan(exp2(best.x)) : normal >= grazing ? 0.0 : 0.5 * M_PI;
 	return STATUS_OK;
 }

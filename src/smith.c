@@ -26,19 +26,18 @@ static double v_groove(struct vec3 wi, struct vec3 wo)
 	return fmin(1.0, 4.0 * cos_h * (fmin(wi.z, wo.z) / length));
 }
 
+double gaf_smith(enum gaf gaf, double lambda_i, double lambda_o)
+{
+	if (gaf == GAF_UNCORRELATED)
+		return 1.0 / (1.0 + lambda_i) * (1.0 / (1.0 + lambda_o));
+	return gaf == GAF_CORRELATED ? 1.0 / (1.0 + lambda_i + lambda_o) : NAN;
+}
+
 double gaf_G(enum gaf gaf, const struct ndf *ndf, struct vec3 wi, struct vec3 wo)
 {
 	if (!(wi.z > 0.0 && wo.z > 0.0))
 		return 0.0;
-	switch (gaf) {
-	case GAF_UNCORRELATED:
-		return ndf_G1(ndf, wi) * ndf_G1(ndf, wo);
-	case GAF_CORRELATED:
-		return 1.0 / (1.0 + ndf_lambda(ndf, wi) + ndf_lambda(ndf, wo));
-	case GAF_V_GROOVE:
+	if (gaf == GAF_V_GROOVE)
 		return v_groove(wi, wo);
-	case GAF_COUNT:
-		break;
-	}
-	return 0.0;
+	return gaf_smith(gaf, ndf_lambda(ndf, wi), ndf_lambda(ndf, wo));
 }
