@@ -128,6 +128,10 @@ static inline void http_serve(int fd, const char *place, const char *name, size_
 		table.last = 1000;
 		if (!ranged)
 			http_answer(fd, table, 0, false);
+	} else if (!strcmp(place, "stuck")) {
+		table.last = 1000000;
+		http_answer(fd, table, from, ranged);
+		pause();
 	} else if (!strcmp(place, "norange")) {
 		table.ranges = false;
 		http_answer(fd, table, from, ranged);

@@ -14,7 +14,8 @@ static void make_path(const char *name)
 {
 	char command[512];
 	snprintf(command, sizeof command,
-		 "mkdir path-%s && for c in sh cat wc tr od mv rm mkdir sleep sed tail head grep unzip printf %s; do "
+		 "mkdir path-%s && for c in sh cat wc tr od mv rm mkdir sleep sed tail head grep unzip printf setsid "
+		 "%s; do "
 		 "p=$(command -v $c) && test -e $p && ln -s $p path-%s/$c; done; true",
 		 name, name, name);
 	shell(command);
@@ -302,6 +303,30 @@ static void disk_full(void)
 	expect_words(1, "cannot make the directory '/proc/nowhere'");
 }
 
+/* Ctrl-C, which a terminal sends to all: what came stays, and the next run goes on from there. */
+static void an_interrupt(void)
+{
+	char command[512];
+	snprintf(command, sizeof command,
+		 "PATH=$PWD/path-%s exec setsid \"$SCRIPT\" -u http://127.0.0.1:%d/stuck d brass 2>stderr", tool,
+		 server.port);
+	const pid_t pid = start(command);
+	shell("i=0; until test -s d/brass.binary.part; do i=$((i + 1)); test $i -lt 600 || exit 1; sleep 0.1; done");
+	expect_code(0);
+	assert_int_equal(kill(-pid, SIGINT), 0);
+	assert_int_equal(end(pid), 130);
+	shell("n=$(wc -c <d/brass.binary.part); cmp -n $n d/brass.binary.part expected.binary && ls -A d && printf "
+	      "'stuck/brass.binary 0\\ngood/brass.binary %d\\n' $n >wanted");
+	assert_string_equal(last.out, "brass.binary.part\n");
+	fetch("good", "d brass");
+	expect_code(0);
+	expect_only("brass.binary ");
+	char *requests = slurp("requests"), *wanted = slurp("wanted");
+	assert_string_equal(requests, wanted);
+	free(wanted);
+	free(requests);
+}
+
 #define EACH(name)                                                                                                     \
 	static void name##_each(void **state)                                                                          \
 	{                                                                                                              \
@@ -318,6 +343,7 @@ EACH(a_bad_one_costs_only_itself)
 EACH(what_is_there_already)
 EACH(no_server)
 EACH(disk_full)
+EACH(an_interrupt)
 
 /* Makes all.zip: a good file, and one that is too short. */
 static void the_archive(void **state)
@@ -430,6 +456,7 @@ int main(void)
 		cmocka_unit_test(what_is_there_already_each),
 		cmocka_unit_test(no_server_each),
 		cmocka_unit_test(disk_full_each),
+		cmocka_unit_test(an_interrupt_each),
 		cmocka_unit_test(the_archive),
 		cmocka_unit_test(wrong_usage),
 		cmocka_unit_test(slow_servers),
