@@ -235,7 +235,7 @@ static enum status check_ndfs(const struct merge *m, struct error *error)
 /* The rows are those of these files, which are in order, and of no others. */
 static enum status check_files(const struct merge *m, const struct files *files, struct error *error)
 {
-	char name[TEXT_QUOTE_SIZE], here[PLACE_SIZE];
+	char name[TEXT_QUOTE_SIZE / 2], here[PLACE_SIZE];
 	size_t i = 0;
 	for (size_t f = 0; f < files->n || i < m->n; f++) {
 		const int order = i == m->n       ? -1
@@ -248,7 +248,7 @@ static enum status check_files(const struct merge *m, const struct files *files,
 		}
 		if (order > 0) {
 			text_quote(m->part[i].cell[RESULT_PATH], name, sizeof name);
-			return error_set(error, STATUS_FORMAT, "%s: of '%.120s', which is not among the files given",
+			return error_set(error, STATUS_FORMAT, "%s: of '%s', which is not among the files given",
 					 place(here, &m->part[i]), name);
 		}
 		i = next_file(m, i);
