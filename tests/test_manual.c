@@ -78,7 +78,7 @@ static void the_page_is_sound(void **state)
 	      "100");
 	expect_code(0);
 	if (installed("mandoc")) {
-		shell("mandoc -Tlint -Wstyle page");
+		shell("mandoc -Tlint -Wwarning page");
 		expect_code(0);
 		assert_string_equal(last.out, "");
 	}
