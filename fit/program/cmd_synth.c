@@ -1,30 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit synth - a MERL file of a model, as an ideal measurement would give it, or a noisy one. */
-#include "entries.h"
 #include "merl.h"
+#include "model_table.h"
 #include "options.h"
 #include "report.h"
-#include "table.h"
 
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
-
-/* The values of one row (i, j) of the table; masked entries are left as they are. */
-static void fill_row(struct samples *samples, const struct cook_torrance *model, const struct entries *entries, int i,
-		     int j)
-{
-	const size_t at = (size_t)samples->n_phi_d * (size_t)(j + SAMPLES_THETA_D * i);
-	for (int k = 0; k < samples->n_phi_d; k++) {
-		struct vec3 wi, wo;
-		double f[SAMPLES_CHANNELS];
-		entries_dirs(entries, i, j, k, &wi, &wo);
-		if (!entry_in_range(wi, wo, 0))
-			continue;
-		cook_torrance_f(model, wi, wo, f);
-		for (int c = 0; c < SAMPLES_CHANNELS; c++)
-			samples->value[c][at + (size_t)k] = (float)f[c];
-	}
-}
 
 /* Multiplies each value with 1 + noise g, g normally distributed, in the order of the file; at least 0. */
 static enum status add_noise(struct samples *samples, double noise, uint64_t seed)
@@ -45,15 +27,10 @@ static enum status add_noise(struct samples *samples, double noise, uint64_t see
 
 static enum status synthesise(const struct options *options, const struct cook_torrance *model, struct error *error)
 {
-	const struct entries entries = entries_make(options->fit.bins, options->n_phi_d);
 	struct samples samples;
-	enum status status = samples_alloc(&samples, options->n_phi_d);
+	enum status status = model_table(model, options->fit.bins, options->n_phi_d, options->fit.threads, &samples);
 	if (status)
 		return error_set(error, status, "%s", status_str(status));
-#pragma omp parallel for collapse(2) schedule(dynamic, 64) num_threads(options->fit.threads)
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		for (int j = 0; j < SAMPLES_THETA_D; j++)
-			fill_row(&samples, model, &entries, i, j);
 	if (options->noise > 0)
 		status = add_noise(&samples, options->noise, options->fit.seed);
 	if (status)

@@ -77,34 +77,6 @@ bool csv_is_name(const char *path)
 	return length > 4 && !strcasecmp(path + length - 4, ".csv");
 }
 
-const char *csv_number(char text[CSV_NUMBER_SIZE], double x)
-{
-	text[0] = '\0';
-	for (int digits = 15; digits <= 17 && !isnan(x); digits++) {
-		snprintf(text, CSV_NUMBER_SIZE, "%.*g", digits, x);
-		if (strtod(text, NULL) == x)
-			break;
-	}
-	return text;
-}
-
-bool csv_parse_number(const char *text, double *x)
-{
-	if (!*text) {
-		*x = NAN;
-		return true;
-	}
-	const bool infinite = !strcmp(text, "inf") || !strcmp(text, "-inf");
-	if (!infinite && text[strspn(text, "+-.0123456789eE")])
-		return false;
-	char *end;
-	const double value = strtod(text, &end);
-	if (end == text || *end || (isinf(value) && !infinite))
-		return false;
-	*x = value;
-	return true;
-}
-
 /* Writing */
 
 static void write_cell(FILE *file, const char *cell)

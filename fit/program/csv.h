@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* csv - tables of text cells in RFC 4180's form (lines end with a newline alone), and numbers that read back exactly.
- */
+/* csv - tables of text cells in RFC 4180's form (lines end with a newline alone). */
 #ifndef CSV_H
 #define CSV_H
 
+#include "csv_number.h"
 #include "status.h"
 #include <stdbool.h>
 #include <stddef.h>
@@ -44,12 +44,5 @@ void csv_write_row(FILE *file, char *const *cell, int n_columns);
 
 /* csv_is_name - whether a file of this name is a table: it ends in .csv, in letters of either case. */
 bool csv_is_name(const char *path);
-
-/* csv_number - x in the fewest of 15, 16 or 17 digits that read back exactly; "" for NaN; "inf", "-inf". */
-enum { CSV_NUMBER_SIZE = 32 };
-const char *csv_number(char text[CSV_NUMBER_SIZE], double x);
-/* csv_parse_number - the reverse: decimal notation, "inf" or "-inf", nothing before or after it. "" gives NaN.
- * Returns false, *x untouched, for anything else, numbers beyond a double's range among them. */
-bool csv_parse_number(const char *text, double *x);
 
 #endif
