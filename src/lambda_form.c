@@ -102,24 +102,31 @@ static double ratio(const double p[4], const double q[4], double x)
 	return (p[0] + x * (p[1] + x * (p[2] + x * p[3]))) / (q[0] + x * (q[1] + x * (q[2] + x * q[3])));
 }
 
-/* S2 of eq. 22, in place of z 2F1(...). The polynomials in gamma are written in 1/gamma, which takes infinity. */
-static double rational_S2(double gamma, double z)
+const double lambda_form_p21[4] = {0.0, 1.066, 2.655, 4.892}, lambda_form_q21[4] = {1.038, 2.969, 4.305, 4.418};
+const double lambda_form_p24[4] = {6.537, 6.074, -0.623, 5.223}, lambda_form_q24[4] = {6.538, 6.103, -3.218, 6.347};
+
+/* The polynomials in gamma are written in 1/gamma, which takes infinity; (gamma-1)^gamma is taken into S1, and
+ * K/sqrt(gamma-1) tends to 1/sqrt(pi). */
+struct lambda_rational lambda_form_rational(double gamma, double K)
 {
-	static const double p21[] = {0.0, 1.066, 2.655, 4.892}, q21[] = {1.038, 2.969, 4.305, 4.418};
 	static const double p22[] = {-2.745, 20.574, -27.145, 14.402}, q22[] = {29.938, -84.341, 86.567, -30.612};
 	static const double p23[] = {93.268, -299.305, 324.987, -129.404}, q23[] = {86.064, -245.663, 256.006, -92.609};
-	static const double p24[] = {6.537, 6.074, -0.623, 5.223}, q24[] = {6.538, 6.103, -3.218, 6.347};
 	const double g = 1.0 / gamma;
-	return ratio(p21, q21, z) * (ratio(p22, q22, g) + ratio(p23, q23, g) * ratio(p24, q24, z));
+	return (struct lambda_rational){
+		.factor = isinf(gamma) ? 1.0 / sqrt(M_PI) : K / sqrt(gamma - 1.0),
+		.S1 = (1.0 - g) / (2.0 - 3.0 * g),
+		.S22 = ratio(p22, q22, g),
+		.S23 = ratio(p23, q23, g),
+	};
 }
 
-/* Eq. 13 with S2: (gamma-1)^gamma is taken into S1, and K/sqrt(gamma-1) tends to 1/sqrt(pi). */
 static double rational_lambda(double gamma, double K, double z)
 {
+	const struct lambda_rational r = lambda_form_rational(gamma, K);
 	const double power = isinf(gamma) ? z * z : (gamma - 1.5) * log1p(z * z / (gamma - 1.0));
-	const double S1 = (1.0 - 1.0 / gamma) / (2.0 - 3.0 / gamma) * exp(-power) / z;
-	const double factor = isinf(gamma) ? 1.0 / sqrt(M_PI) : K / sqrt(gamma - 1.0);
-	return factor * (S1 + rational_S2(gamma, z)) - 0.5;
+	const double S2 = ratio(lambda_form_p21, lambda_form_q21, z) *
+			  (r.S22 + r.S23 * ratio(lambda_form_p24, lambda_form_q24, z));
+	return r.factor * (r.S1 * exp(-power) / z + S2) - 0.5;
 }
 
 double lambda_form_lambda(enum lambda_form form, double gamma, double K, double z)

@@ -35,6 +35,15 @@ bool lambda_form_takes(enum lambda_form form, double gamma);
  * Returns: Lambda >= 0, 0 for huge z but for the rational form; NaN for NaN and for LAMBDA_EXACT. */
 double lambda_form_lambda(enum lambda_form form, double gamma, double K, double z);
 
+/* struct lambda_rational - eq. 22 at one gamma:
+ *     Lambda = factor (S1 e/z + r21(z) (S22 + S23 r24(z))) - 1/2,   e = exp(-z^2) or (1 + z^2/(gamma-1))^(3/2-gamma)
+ * where r21, r24 are ratios p/q of the cubics below, whose coefficients are those of z^0 to z^3. */
+struct lambda_rational {
+	double factor, S1, S22, S23;
+};
+struct lambda_rational lambda_form_rational(double gamma, double K);
+extern const double lambda_form_p21[4], lambda_form_q21[4], lambda_form_p24[4], lambda_form_q24[4];
+
 /* lambda_form_2f1 - 2F1(1/2, gamma-1/2; 3/2; x), GSL's where GSL has it [STD supplement, algorithm 2, corrected].
  * Given:   gamma in (1.5, 1e5], K as above, x <= 0
  * Returns: relative error 3e-14 for gamma up to 100, 2e-12 at 1e5. Calls GSL inside its domain only: under any error

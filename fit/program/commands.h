@@ -21,6 +21,7 @@ enum command {
 	COMMAND_EVAL,
 	COMMAND_INFO,
 	COMMAND_SYNTH,
+	COMMAND_EXPORT,
 	COMMAND_COUNT
 };
 
@@ -31,6 +32,7 @@ int cmd_merge(int argc, char **argv, atomic_bool *cancel);
 int cmd_bench(int argc, char **argv, atomic_bool *cancel);
 int cmd_eval(int argc, char **argv, atomic_bool *cancel);
 int cmd_info(int argc, char **argv, atomic_bool *cancel);
+int cmd_export(int argc, char **argv, atomic_bool *cancel);
 int cmd_synth(int argc, char **argv, atomic_bool *cancel);
 
 #endif

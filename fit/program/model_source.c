@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model_source.h"
 #include "merl.h"
+#include "model_json.h"
 #include "text_quote.h"
 
 #include <stdlib.h>
@@ -29,6 +30,12 @@ static const char *const of_a_fit[] = {"weight", "unbounded", "no-diffuse", "no-
 static const char *const of_a_model[] = {"kd",  "ks",     "sigma", "gamma",   "ior",       "k",
 					 "gaf", "lambda", "bins",  "fresnel", "max-theta", NULL};
 
+static bool is_json(const char *path)
+{
+	const size_t length = strlen(path);
+	return length > 5 && !strcmp(path + length - 5, ".json");
+}
+
 static int check_rows(const struct options *options)
 {
 	const char *ignored = first_given(options, of_a_model);
@@ -38,6 +45,8 @@ static int check_rows(const struct options *options)
 		return options_usage(options->command, "--%s and --from exclude each other", ignored);
 	if (options->row && options_given(options, "ndf"))
 		return options_usage(options->command, "--ndf and --row exclude each other");
+	if (is_json(options->from) && (options->row || options_given(options, "ndf")))
+		return options_usage(options->command, "a model's JSON has neither --row nor --ndf");
 	return -1;
 }
 
@@ -134,6 +143,7 @@ static enum status add_row(const struct options *options, char *const *row, size
 		return error_set(error, status, "'%s' row %zu: %.200s", name, number, why.text);
 	}
 	model->error = result_number(row, RESULT_ERROR);
+	snprintf(model->input, sizeof model->input, "%s", row[RESULT_INPUT]);
 	return !*row[RESULT_PATH] || set_path(model, row[RESULT_PATH]) ? STATUS_OK : no_memory(error);
 }
 
@@ -152,6 +162,24 @@ static enum status read_rows(const struct options *options, const char *material
 		status = error_set(error, STATUS_NO_DATA, "'%s' has no such row", name);
 	}
 	return status;
+}
+
+/* The one model of a file that `stdfit export --format json` wrote, whatever the material. */
+static enum status read_json(const struct options *options, struct model_source *source, struct error *error)
+{
+	struct source_model *model = add(source, options, NULL);
+	struct model_json json;
+	if (!model)
+		return no_memory(error);
+	const enum status status = model_json_read(options->from, &json, &model->fit, error);
+	if (status)
+		return status;
+	model->model = json.model;
+	model->pwl = json.pwl;
+	model->error = json.error;
+	model->material = json.material;
+	model->path = json.path;
+	return STATUS_OK;
 }
 
 /* Moves the results into models; what cannot be moved is released. */
@@ -204,6 +232,8 @@ enum status model_source_read(const struct options *options, const char *path, s
 	enum status status;
 	if (path && !material)
 		status = no_memory(error);
+	else if (kind == SOURCE_ROWS && is_json(options->from))
+		status = read_json(options, source, error);
 	else if (kind == SOURCE_ROWS)
 		status = read_rows(options, material, source, error);
 	else if (kind == SOURCE_GIVEN)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* model_source - where a command takes its models from:
  *     rows of a result table    --from FILE.csv, all of --ndf that are of this material, or --row N
+ *     a model's JSON            --from FILE.json, as `stdfit export` writes it
  *     given parameters          --kd, --ks, --ndf, --sigma, --gamma, ...
  *     a fresh fit               of a MERL file, with each NDF of --ndf, else */
 #ifndef MODEL_SOURCE_H
@@ -20,7 +21,8 @@ struct source_model {
 	double error;   /* E under fit.weight as fitted, as the row has it; NaN for given parameters */
 	char *material; /* of the row or the file; NULL: given parameters without a file */
 	char *path;     /* the MERL file that it was fitted to, as the row has it; NULL: none, or not known */
-	size_t row;     /* SOURCE_ROWS: number of its row in the table, from 1; else 0 */
+	char input[RESULT_INPUT_SIZE]; /* size and hash of that file, as the row has them; "": not known */
+	size_t row;                    /* SOURCE_ROWS: number of its row in the table, from 1; else 0 */
 };
 
 struct model_source {

@@ -16,9 +16,11 @@
 #define EVAL (1u << COMMAND_EVAL)
 #define INFO (1u << COMMAND_INFO)
 #define SYNTH (1u << COMMAND_SYNTH)
+#define EXPORT (1u << COMMAND_EXPORT)
 #define FITS (FIT | COMPARE)
 #define SEARCHES (FITS | BENCH)
 #define MODEL (EVAL | SYNTH)
+#define SOURCES EXPORT /* a fit, a row or given parameters: model_source.h */
 #define AT(member) offsetof(struct options, member)
 
 const struct option_spec option_specs[] = {
@@ -27,6 +29,8 @@ const struct option_spec option_specs[] = {
 	 0},
 	{"output", 'o', KIND_TEXT, COMPARE | MERGE, NOT_RECORDED, "FILE",
 	 "write the table there; an older FILE becomes FILE~", AT(output), 0, 0},
+	{"output", 'o', KIND_TEXT, EXPORT, NOT_RECORDED, "FILE", "write it there, not to standard output", AT(output), 0, 0},
+	{"format", 0, KIND_FORMAT, EXPORT, NOT_RECORDED, "NAME", "what to write", AT(format), 0, 0},
 	{"json", 0, KIND_ON, SEARCHES | MERGE | EVAL | INFO, NOT_RECORDED, NULL, "JSON instead of CSV", AT(json), 0, 0},
 	{"table", 0, KIND_ON, SEARCHES | MERGE | EVAL | INFO, NOT_RECORDED, NULL,
 	 "a readable table on standard output even if that is no terminal", AT(readable), 0, 0},
@@ -38,24 +42,25 @@ const struct option_spec option_specs[] = {
 	{"recursive", 'r', KIND_ON, FITS | MERGE, NOT_RECORDED, NULL, "directories: take the files below them too",
 	 AT(recursive), 0, 0},
 	{"quiet", 'q', KIND_ON, SEARCHES, NOT_RECORDED, NULL, "no progress line, no summary", AT(quiet), 0, 0},
-	{"threads", 0, KIND_INT, SEARCHES | MODEL, NOT_RECORDED, "N", "threads; changes no result", AT(fit.threads), 1,
+	{"quiet", 'q', KIND_ON, EXPORT, NOT_RECORDED, NULL, "no words but errors", AT(quiet), 0, 0},
+	{"threads", 0, KIND_INT, SEARCHES | MODEL | SOURCES, NOT_RECORDED, "N", "threads; changes no result", AT(fit.threads), 1,
 	 1024},
 	{"ndf", 0, KIND_NDFS, FITS, RECORDED_WITHIN, "LIST", "NDFs to fit, separated by commas", AT(fit.ndf), 0, 0},
-	{"ndf", 0, KIND_NDFS, MODEL | BENCH, NOT_RECORDED, "NAME", "NDF of the model", AT(fit.ndf), 0, 0},
-	{"gaf", 0, KIND_GAF, SEARCHES | MODEL, RECORDED, "NAME", "masking and shadowing G", AT(fit.gaf), 0, 0},
-	{"lambda", 0, KIND_LAMBDA, SEARCHES | MODEL, RECORDED, "FORM",
+	{"ndf", 0, KIND_NDFS, MODEL | BENCH | SOURCES, NOT_RECORDED, "NAME", "NDF of the model", AT(fit.ndf), 0, 0},
+	{"gaf", 0, KIND_GAF, SEARCHES | MODEL | SOURCES, RECORDED, "NAME", "masking and shadowing G", AT(fit.gaf), 0, 0},
+	{"lambda", 0, KIND_LAMBDA, SEARCHES | MODEL | SOURCES, RECORDED, "FORM",
 	 "form of Lambda of STD and its family; other NDFs have the exact one only", AT(fit.lambda), 0, 0},
-	{"fresnel", 0, KIND_FRESNEL, SEARCHES | MODEL, RECORDED, "NAME", "Fresnel term F", AT(fit.fresnel), 0, 0},
-	{"weight", 0, KIND_WEIGHT, SEARCHES, RECORDED, "NAME", "how an entry counts in the error", AT(fit.weight), 0,
+	{"fresnel", 0, KIND_FRESNEL, SEARCHES | MODEL | SOURCES, RECORDED, "NAME", "Fresnel term F", AT(fit.fresnel), 0, 0},
+	{"weight", 0, KIND_WEIGHT, SEARCHES | SOURCES, RECORDED, "NAME", "how an entry counts in the error", AT(fit.weight), 0,
 	 0},
-	{"bins", 0, KIND_BINS, SEARCHES | MODEL | INFO, RECORDED, "NAME", "where the entries of a table stand",
+	{"bins", 0, KIND_BINS, SEARCHES | MODEL | SOURCES | INFO, RECORDED, "NAME", "where the entries of a table stand",
 	 AT(fit.bins), 0, 0},
-	{"max-theta", 0, KIND_NUMBER, SEARCHES | EVAL, RECORDED, "DEG",
+	{"max-theta", 0, KIND_NUMBER, SEARCHES | EVAL | SOURCES, RECORDED, "DEG",
 	 "leave out entries whose theta_i or theta_o exceeds this", AT(fit.max_theta), 1, 90},
-	{"unbounded", 0, KIND_ON, SEARCHES, RECORDED, NULL, "kd and ks may exceed 1", AT(fit.unbounded), 0, 0},
-	{"no-diffuse", 0, KIND_OFF, SEARCHES, RECORDED, NULL, "kd = 0", AT(fit.diffuse), 0, 0},
-	{"no-specular", 0, KIND_OFF, SEARCHES, RECORDED, NULL, "ks = 0", AT(fit.specular), 0, 0},
-	{"gray", 0, KIND_ON, SEARCHES, RECORDED, NULL, "one kd and one ks for the three channels", AT(fit.gray), 0, 0},
+	{"unbounded", 0, KIND_ON, SEARCHES | SOURCES, RECORDED, NULL, "kd and ks may exceed 1", AT(fit.unbounded), 0, 0},
+	{"no-diffuse", 0, KIND_OFF, SEARCHES | SOURCES, RECORDED, NULL, "kd = 0", AT(fit.diffuse), 0, 0},
+	{"no-specular", 0, KIND_OFF, SEARCHES | SOURCES, RECORDED, NULL, "ks = 0", AT(fit.specular), 0, 0},
+	{"gray", 0, KIND_ON, SEARCHES | SOURCES, RECORDED, NULL, "one kd and one ks for the three channels", AT(fit.gray), 0, 0},
 	{"ior", 0, KIND_NUMBER, SEARCHES, RECORDED, "N", "fix the index of refraction", AT(fit.ior), FIT_IOR_MIN,
 	 FIT_IOR_MAX},
 	{"gamma", 0, KIND_GAMMA, SEARCHES, RECORDED, "G", "fix the shape gamma (STD: above 1.5; inf is Beckmann)",
@@ -90,12 +95,18 @@ const struct option_spec option_specs[] = {
 	{"gamma", 0, KIND_GAMMA, MODEL, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann)",
 	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
 	{"ior", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "N", "index of refraction", AT(fit.ior), FIT_IOR_MIN, FIT_IOR_MAX},
-	{"k", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "K", "imaginary part of a conductor's index", AT(k), 0, FIT_K_MAX},
-	{"kd", 0, KIND_RGB, MODEL, NOT_RECORDED, "R,G,B", "diffuse factors", AT(kd), 0, 1e6},
-	{"ks", 0, KIND_RGB, MODEL, NOT_RECORDED, "R,G,B", "specular factors", AT(ks), 0, 1e6},
-	{"from", 0, KIND_TEXT, EVAL, NOT_RECORDED, "FILE.csv",
-	 "take the model from the row of this material (and --ndf, if given)", AT(from), 0, 0},
-	{"row", 0, KIND_INT, EVAL, NOT_RECORDED, "N", "take row N of --from, counted from 1", AT(row), 1, INT_MAX},
+	{"sigma", 0, KIND_NUMBER, SOURCES, NOT_RECORDED, "S", "roughness: given with --ks, else fixed in the fit",
+	 AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
+	{"gamma", 0, KIND_GAMMA, SOURCES, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann), likewise",
+	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
+	{"ior", 0, KIND_NUMBER, SOURCES, NOT_RECORDED, "N", "index of refraction, likewise; with --ks 1.5 if not given",
+	 AT(fit.ior), FIT_IOR_MIN, FIT_IOR_MAX},
+	{"k", 0, KIND_NUMBER, MODEL | SOURCES, NOT_RECORDED, "K", "imaginary part of a conductor's index", AT(k), 0, FIT_K_MAX},
+	{"kd", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "diffuse factors", AT(kd), 0, 1e6},
+	{"ks", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "specular factors", AT(ks), 0, 1e6},
+	{"from", 0, KIND_TEXT, EVAL | SOURCES, NOT_RECORDED, "FILE.csv",
+	 "take the model from the row of this material (and --ndf, if given); FILE.json: from a model's JSON", AT(from), 0, 0},
+	{"row", 0, KIND_INT, EVAL | SOURCES, NOT_RECORDED, "N", "take row N of --from, counted from 1", AT(row), 1, INT_MAX},
 	{"phi", 0, KIND_PHI, SYNTH, NOT_RECORDED, "180|360", "entries along phi_d", AT(n_phi_d), 0, 0},
 	{"noise", 0, KIND_NUMBER, SYNTH, NOT_RECORDED, "REL", "standard deviation of a factor 1 + noise on each value",
 	 AT(noise), 0, 10},
@@ -123,6 +134,8 @@ const char *option_choice(enum option_kind kind, int i)
 		return i < BINS_COUNT ? bins_name((enum bins)i) : NULL;
 	case KIND_PHI:
 		return i < 2 ? (i ? "360" : "180") : NULL;
+	case KIND_FORMAT:
+		return i < EXPORT_FORMATS ? export_format_name((enum export_format)i) : NULL;
 	case KIND_ALGORITHM:
 	case KIND_ALGORITHMS:
 		return i < ALGORITHM_COUNT ? algorithm_name(algorithm_at(i)) : NULL;
@@ -142,6 +155,8 @@ static enum status choice_find(enum option_kind kind, const char *text, void *va
 		return fresnel_find(text, value);
 	case KIND_WEIGHT:
 		return weight_find(text, value);
+	case KIND_FORMAT:
+		return export_format_find(text, value);
 	case KIND_ALGORITHM:
 		return algorithm_find(text, value);
 	default:
@@ -399,6 +414,9 @@ void option_write(FILE *file, const struct options *options, const struct option
 	case KIND_BINS:
 		fputs(bins_name(*(const enum bins *)value), file);
 		break;
+	case KIND_FORMAT:
+		fputs(export_format_name(*(const enum export_format *)value), file);
+		break;
 	case KIND_ALGORITHM:
 		fputs(algorithm_name(*(const struct algorithm *const *)value), file);
 		break;
@@ -416,7 +434,7 @@ bool option_applies(const struct option_spec *spec, enum command command)
 static bool has_default(const struct options *defaults, const struct option_spec *spec)
 {
 	if (!spec->argument || spec->kind == KIND_TEXT || spec->kind == KIND_PERCENT || spec->kind == KIND_ALGORITHMS ||
-	    spec->kind == KIND_SHARD)
+	    spec->kind == KIND_SHARD || spec->kind == KIND_FORMAT)
 		return false;
 	const void *value = (const char *)defaults + spec->offset;
 	if (spec->kind == KIND_INT)

@@ -46,6 +46,12 @@ static const struct command_text commands[COMMAND_COUNT] = {
 	[COMMAND_INFO] = {"info", "FILE...", "what is in a MERL file: validity, ranges, suspects",
 			  "Shows size, hash, valid, negative and non-finite entries, and the range of the valid\n"
 			  "values above the horizon per channel (1/sr).\n"},
+	[COMMAND_EXPORT] = {"export", "[FILE]", "a model for another program: BRDF Explorer, Mitsuba 3, pbrt-v4, glTF, ...",
+			    "Writes one model: fitted to FILE, from the row of FILE's material in a result table, from\n"
+			    "any row of it (--row), or from given parameters (--kd, --ks, ...). The first lines say\n"
+			    "whether the export is exact or approximate, and why. Where the target has no such model, one\n"
+			    "that it has is fitted in its place, to FILE or the file of the row if that can be read, else\n"
+			    "to the model's own table; the export says what that costs in error.\n"},
 	[COMMAND_SYNTH] = {"synth", "OUT.binary", "write a MERL file of a model",
 			   "Writes the table that an ideal measurement of the model would give; -1 below the\n"
 			   "horizon.\n"},
@@ -168,7 +174,7 @@ struct options options_default(enum command command)
 		options.fit.n_ndf = 1;
 		options.fit.ior = 1.5;
 	}
-	if (command == COMMAND_BENCH)
+	if (command == COMMAND_BENCH || command == COMMAND_EXPORT)
 		options.fit.n_ndf = 1;
 	return options;
 }
@@ -324,7 +330,7 @@ int options_parse(struct options *options, enum command command, int argc, char 
 	options->n_paths = argc - optind;
 	options->cancel = cancel;
 	options->fit.cancel = cancel;
-	if (!options->n_paths)
+	if (!options->n_paths && commands[command].arguments[0] != '[')
 		return options_usage(command, "expected %s, found nothing", commands[command].arguments);
 	return command == COMMAND_FIT || command == COMMAND_COMPARE || command == COMMAND_BENCH ? options_check_fit(options)
 												: -1;
@@ -381,7 +387,7 @@ int options_model(const struct options *options, struct cook_torrance *model)
 	const int wrong = check_model(options);
 	if (wrong >= 0)
 		return wrong;
-	*model = (struct cook_torrance){.gaf = fit->gaf, .fresnel = fit->fresnel, .n = fit->ior, .k = options->k};
+	*model = (struct cook_torrance){.gaf = fit->gaf, .fresnel = fit->fresnel, .n = isnan(fit->ior) ? 1.5 : fit->ior, .k = options->k};
 	memcpy(model->kd, options->kd, sizeof model->kd);
 	memcpy(model->ks, options->ks, sizeof model->ks);
 	const double sigma = isnan(fit->sigma) ? 1 : fit->sigma, gamma = isnan(fit->gamma) ? 2 : fit->gamma;

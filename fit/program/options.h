@@ -5,6 +5,7 @@
 
 #include "algorithms.h"
 #include "commands.h"
+#include "export.h"
 #include "files.h"
 #include "report.h"
 
@@ -22,6 +23,7 @@ struct options {
 	double kd[3], ks[3], k;
 	const char *from; /* a result table to take the model from */
 	int row;          /* its row, from 1; 0: the one of this material and NDF */
+	enum export_format format;
 	int n_phi_d;
 	double noise;
 	/* What bench runs; none: all. */

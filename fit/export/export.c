@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "csv_number.h"
+#include "export_format.h"
+#include "model_table.h"
+#include "text_quote.h"
+
+#include <string.h>
+
+static const struct export_target *const targets[EXPORT_FORMATS] = {
+	[EXPORT_BRDF] = &export_brdf, [EXPORT_MERL] = &export_merl, [EXPORT_MITSUBA] = &export_mitsuba,
+	[EXPORT_PBRT] = &export_pbrt, [EXPORT_GLTF] = &export_gltf, [EXPORT_JSON] = &export_json,
+};
+
+const char *export_format_name(enum export_format format)
+{
+	return format < EXPORT_FORMATS ? targets[format]->name : "unknown";
+}
+
+enum status export_format_find(const char *name, enum export_format *format)
+{
+	for (enum export_format f = 0; f < EXPORT_FORMATS; f++)
+		if (!strcmp(name, targets[f]->name)) {
+			*format = f;
+			return STATUS_OK;
+		}
+	return STATUS_DOMAIN;
+}
+
+bool export_wants_samples(enum export_format format, const struct cook_torrance *model)
+{
+	return targets[format]->replaces && targets[format]->replaces(model);
+}
+
+enum status export_prepare(struct export *export, enum export_format format, const struct export_source *source,
+			   struct error *error)
+{
+	*export = (struct export){.format = format, .source = *source, .model = *source->model};
+	if (source->model->ndf.sigma_x != source->model->ndf.sigma_y)
+		return error_set(error, STATUS_UNSUPPORTED, "an anisotropic model cannot be exported");
+	return targets[format]->prepare(export, error);
+}
+
+enum status export_write(const struct export *export, FILE *file, struct error *error)
+{
+	return targets[export->format]->write(export, file, error);
+}
+
+enum status export_table(const struct export *export, struct samples *samples)
+{
+	return model_table(&export->model, export->source.fit->bins, 180, export->source.fit->threads, samples);
+}
+
+enum status export_as_it_is(struct export *export, const char *text)
+{
+	snprintf(export->why, sizeof export->why, "exact: %.480s", text);
+	return STATUS_OK;
+}
+
+static enum status merl_prepare(struct export *export, struct error *error)
+{
+	char text[EXPORT_TEXT];
+	(void)error;
+	snprintf(text, sizeof text, "the model at the entries of the table (%s bins), to the 24 bits of a float",
+		 bins_name(export->source.fit->bins));
+	return export_as_it_is(export, text);
+}
+
+const struct export_target export_merl = {.name = "merl", .prepare = merl_prepare};
+
+/* Text that the formats share */
+
+void export_describe(const struct export *export, char text[EXPORT_TEXT])
+{
+	const struct cook_torrance *model = &export->model;
+	char name[TEXT_QUOTE_SIZE] = "a model", number[CSV_NUMBER_SIZE];
+	int used;
+	if (export->source.material)
+		text_quote(export->source.material, name, sizeof name);
+	used = snprintf(text, EXPORT_TEXT, "%s: %s", name, ndf_name(model->ndf.class));
+	for (int i = 0; ndf_param_at(model->ndf.class, i); i++)
+		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " %s %s",
+				 ndf_param_at(model->ndf.class, i)->name, csv_number(number, model->ndf.param[i]));
+	used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", %s G, %s F", gaf_name(model->gaf),
+			 fresnel_name(model->fresnel));
+	if (model->fresnel != FRESNEL_NONE)
+		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", n %s", csv_number(number, model->n));
+	if (model->fresnel == FRESNEL_CONDUCTOR)
+		snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", k %s", csv_number(number, model->k));
+}
+
+static void comment_line(FILE *file, const char *before, const char *text, const char *after)
+{
+	fputs(before, file);
+	for (const char *at = text; *at; at++)
+		fputc((*at == '-' && at[1] == '-') || *at == '\\' || *at == '"' ? '_' : *at, file);
+	fprintf(file, "%s\n", after);
+}
+
+void export_comment(const struct export *export, FILE *file, const char *before, const char *after)
+{
+	char text[EXPORT_TEXT];
+	comment_line(file, before, export->why, after);
+	if (*export->cost)
+		comment_line(file, before, export->cost, after);
+	export_describe(export, text);
+	comment_line(file, before, text, after);
+	snprintf(text, sizeof text, "written by stdfit %s", STDFIT_VERSION);
+	comment_line(file, before, text, after);
+}
+
+void export_identifier(const struct export *export, char name[EXPORT_NAME])
+{
+	const char *from = export->source.material && *export->source.material ? export->source.material : "material";
+	int n = 0;
+	for (; *from && n < EXPORT_NAME - 1; from++) {
+		const bool plain = (*from >= '0' && *from <= '9') || (*from >= 'a' && *from <= 'z') ||
+				   (*from >= 'A' && *from <= 'Z');
+		name[n++] = plain ? *from : '_';
+	}
+	name[n] = '\0';
+}

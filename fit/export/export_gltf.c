@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* glTF 2.0 with KHR_materials_ior and KHR_materials_specular. Its dielectric is no sum but a layer,
+ *     f_c = (1 - max F) baseColor_c / pi + F_c D G / (4 cos_i cos_o),
+ *     F_c = s (F0_c + (1 - F0_c) (1 - cos_d)^5),  F0_c = min(1, ((n-1)/(n+1))^2 specularColor_c),
+ * D of GGX with sigma = roughness^2, G height-correlated: so every export is approximate, and its error is measured with
+ * that formula. s = max ks, specularColor = ks/s. */
+#include "csv_number.h"
+#include "entries.h"
+#include "export_format.h"
+#include "stand_in.h"
+#include "table.h"
+
+#include <string.h>
+
+static const struct target target = {
+	.name = "glTF",
+	.gaf = GAF_CORRELATED,
+	.fresnel = 1u << FRESNEL_SCHLICK,
+	.instead = FRESNEL_SCHLICK,
+	.sigma_max = 1,
+};
+
+/* What a viewer makes of the model. */
+static void gltf_f(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo, double f[3])
+{
+	struct cook_torrance lobe = *model;
+	const double s = export_max(model->ks), root = (model->n - 1) / (model->n + 1);
+	const double x = 1 - fmin(0.5 * vec3_length(vec3_add(wi, wo)), 1);
+	double F[3], most = 0;
+	lobe.fresnel = FRESNEL_NONE;
+	const double DG = s > 0 ? cook_torrance_lobe(&lobe, wi, wo) : 0;
+	for (int c = 0; c < 3; c++) {
+		const double F0 = s > 0 ? fmin(root * root * model->ks[c] / s, 1) : 0;
+		F[c] = s * (F0 + (1 - F0) * (x * x) * (x * x) * x);
+		most = fmax(most, F[c]);
+	}
+	for (int c = 0; c < 3; c++)
+		f[c] = (1 - most) * model->kd[c] * M_1_PI + F[c] * DG;
+}
+
+/* Sums of row i of the table: w |m - f| and w m. */
+static void add_row(const struct export *export, const struct samples *samples, const struct entries *entries, int i,
+		    double sum[2])
+{
+	const struct fit_options *fit = export->source.fit;
+	const double min_cos = max_theta_cos(fit->max_theta);
+	for (int j = 0; j < SAMPLES_THETA_D; j++)
+		for (int k = 0; k < samples->n_phi_d; k++) {
+			const size_t at = (size_t)k + (size_t)samples->n_phi_d * (size_t)(j + SAMPLES_THETA_D * i);
+			struct vec3 wi, wo;
+			double f[3];
+			entries_dirs(entries, i, j, k, &wi, &wo);
+			if (isnan(samples->value[0][at]) || !entry_in_range(wi, wo, min_cos))
+				continue;
+			gltf_f(&export->model, wi, wo, f);
+			const double w = weight_at(fit->weight, i, j, wi.z, wo.z);
+			for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+				sum[0] += w * fabs((double)samples->value[c][at] - f[c]);
+				sum[1] += w * (double)samples->value[c][at];
+			}
+		}
+}
+
+/* E of what a viewer makes of the model. */
+static double gltf_error(const struct export *export, const struct samples *samples)
+{
+	const struct entries entries = entries_make(export->source.fit->bins, samples->n_phi_d);
+	double sum[SAMPLES_THETA_H][2] = {{0}}, difference = 0, all = 0;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(export->source.fit->threads)
+	for (int i = 0; i < SAMPLES_THETA_H; i++)
+		add_row(export, samples, &entries, i, sum[i]);
+	for (int i = 0; i < SAMPLES_THETA_H; i++) {
+		difference += sum[i][0];
+		all += sum[i][1];
+	}
+	return difference / all;
+}
+
+static enum status gltf_prepare(struct export *export, struct error *error)
+{
+	struct samples own;
+	const enum status status = stand_in_prepare(export, &target, error);
+	if (status)
+		return status;
+	if (export_max(export->model.kd) > 1 || export_max(export->model.ks) > 1)
+		return error_set(error, STATUS_UNSUPPORTED,
+				 "glTF has no factor above 1: kd is up to %.5g, ks up to %.5g",
+				 export_max(export->model.kd), export_max(export->model.ks));
+	if (!export->stand_in)
+		snprintf(export->why, sizeof export->why, "approximate: the model's own parameters, but");
+	const size_t used = strlen(export->why);
+	snprintf(export->why + used, sizeof export->why - used,
+		 "%s glTF takes what the surface reflects from the diffuse part", export->stand_in ? ", and" : "");
+	const struct samples *samples = stand_in_samples(&export->source, &own);
+	if (!samples)
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	const size_t told = strlen(export->cost);
+	snprintf(export->cost + told, sizeof export->cost - told, "%serror of what a glTF viewer shows %.5g%s",
+		 told ? "; " : "", gltf_error(export, samples),
+		 told || export->source.samples ? "" : " (against a table of the model itself)");
+	samples_free(&own);
+	return STATUS_OK;
+}
+
+/* Array elements, without brackets. */
+static void write_rgb(FILE *file, const double rgb[3], double scale)
+{
+	char text[CSV_NUMBER_SIZE];
+	for (int c = 0; c < 3; c++)
+		fprintf(file, "%s%s", c ? ", " : "", csv_number(text, fmin(rgb[c] * scale, 1)));
+}
+
+static enum status gltf_write(const struct export *export, FILE *file, struct error *error)
+{
+	const struct cook_torrance *model = &export->model;
+	const double s = export_max(model->ks);
+	char name[EXPORT_NAME], text[CSV_NUMBER_SIZE];
+	(void)error;
+	export_identifier(export, name);
+	fprintf(file,
+		"{\n  \"asset\": {\n    \"version\": \"2.0\",\n    \"generator\": \"stdfit %s\",\n    \"extras\": {\n"
+		"      \"comment\": [\n",
+		STDFIT_VERSION);
+	export_comment(export, file, "        \"", "\",");
+	fprintf(file,
+		"        \"\"\n      ]\n    }\n  },\n"
+		"  \"extensionsUsed\": [\"KHR_materials_ior\", \"KHR_materials_specular\"],\n"
+		"  \"materials\": [\n    {\n      \"name\": \"%s\",\n      \"pbrMetallicRoughness\": {\n"
+		"        \"baseColorFactor\": [",
+		name);
+	write_rgb(file, model->kd, 1);
+	fprintf(file, ", 1],\n        \"metallicFactor\": 0,\n        \"roughnessFactor\": %s\n      },\n",
+		csv_number(text, s > 0 ? sqrt(model->ndf.sigma_x) : 1));
+	fprintf(file, "      \"extensions\": {\n        \"KHR_materials_ior\": {\"ior\": %s},\n",
+		csv_number(text, s > 0 ? model->n : 1.5));
+	fprintf(file,
+		"        \"KHR_materials_specular\": {\n          \"specularFactor\": %s,\n          "
+		"\"specularColorFactor\": [",
+		csv_number(text, s));
+	write_rgb(file, model->ks, s > 0 ? 1 / s : 0);
+	fprintf(file, "]\n        }\n      }\n    }\n  ]\n}\n");
+	return STATUS_OK;
+}
+
+static bool replaces(const struct cook_torrance *model)
+{
+	(void)model;
+	return true;
+}
+
+const struct export_target export_gltf = {
+	.name = "gltf", .prepare = gltf_prepare, .write = gltf_write, .replaces = replaces};

@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "csv_number.h"
+#include "export_format.h"
+#include "model_json.h"
+#include "text_quote.h"
+
+#include <string.h>
+
+static void write_number(FILE *file, double x)
+{
+	char text[CSV_NUMBER_SIZE];
+	csv_number(text, x);
+	fputs(isnan(x) ? "null" : isinf(x) ? (x > 0 ? "\"inf\"" : "\"-inf\"") : text, file);
+}
+
+/* What is no printable UTF-8 becomes U+FFFD. */
+static void write_string(FILE *file, const char *text)
+{
+	if (!text) {
+		fputs("null", file);
+		return;
+	}
+	fputc('"', file);
+	while (*text) {
+		const size_t length = text_printable(text);
+		if (*text == '"' || *text == '\\')
+			fputc('\\', file);
+		if (length)
+			fwrite(text, 1, length, file);
+		else
+			fputs("\xef\xbf\xbd", file);
+		text += length ? length : 1;
+	}
+	fputc('"', file);
+}
+
+static void write_rgb(FILE *file, const char *name, const double rgb[3])
+{
+	fprintf(file, "  \"%s\": [", name);
+	for (int c = 0; c < 3; c++) {
+		fputs(c ? ", " : "", file);
+		write_number(file, rgb[c]);
+	}
+	fputs("],\n", file);
+}
+
+static void write_nodes(FILE *file, const struct pwl *pwl)
+{
+	fputs("  \"nodes\": {\n    \"theta\": [", file);
+	for (int i = 0; i < pwl->n_nodes; i++) {
+		fputs(i ? ", " : "", file);
+		write_number(file, pwl->nodes[i].theta);
+	}
+	fputs("],\n    \"D\": [", file);
+	for (int i = 0; i < pwl->n_nodes; i++) {
+		fputs(i ? ", " : "", file);
+		write_number(file, pwl->nodes[i].Fx); /* D itself where the distribution is isotropic */
+	}
+	fputs("]\n  },\n", file);
+}
+
+static void write_ndf(FILE *file, const struct ndf *ndf)
+{
+	fprintf(file, "  \"ndf\": \"%s\",\n", ndf_name(ndf->class));
+	if (ndf_is_tabulated(ndf->class)) {
+		write_nodes(file, ndf->pwl);
+	} else {
+		fputs("  \"parameters\": {", file);
+		for (int i = 0; ndf_param_at(ndf->class, i); i++) {
+			fprintf(file, "%s\"%s\": ", i ? ", " : "", ndf_param_at(ndf->class, i)->name);
+			write_number(file, ndf->param[i]);
+		}
+		fputs("},\n", file);
+	}
+	fprintf(file, "  \"lambda\": \"%s\",\n", lambda_form_name(ndf->lambda_form));
+}
+
+static void write_fitted(FILE *file, const struct export_source *source)
+{
+	fputs("  \"fitted\": {\"path\": ", file);
+	write_string(file, source->path);
+	fprintf(file, ", \"weight\": \"%s\", \"bins\": \"%s\", \"max_theta\": ", weight_name(source->fit->weight),
+		bins_name(source->fit->bins));
+	write_number(file, source->fit->max_theta);
+	fputs(", \"error\": ", file);
+	write_number(file, source->error);
+	fputs("}\n", file);
+}
+
+static enum status json_write(const struct export *export, FILE *file, struct error *error)
+{
+	const struct cook_torrance *model = &export->model;
+	(void)error;
+	fputs("{\n  \"format\": \"stdfit-model-1\",\n  \"comment\": [\n", file);
+	export_comment(export, file, "    \"", "\",");
+	fputs("    \"\"\n  ],\n  \"material\": ", file);
+	write_string(file, export->source.material);
+	fputs(",\n", file);
+	write_rgb(file, "kd", model->kd);
+	write_rgb(file, "ks", model->ks);
+	write_ndf(file, &model->ndf);
+	fprintf(file, "  \"gaf\": \"%s\",\n  \"fresnel\": \"%s\",\n  \"ior\": ", gaf_name(model->gaf),
+		fresnel_name(model->fresnel));
+	write_number(file, model->n);
+	fputs(",\n  \"k\": ", file);
+	write_number(file, model->k);
+	fputs(",\n", file);
+	write_fitted(file, &export->source);
+	fputs("}\n", file);
+	return STATUS_OK;
+}
+
+static enum status json_prepare(struct export *export, struct error *error)
+{
+	(void)error;
+	return export_as_it_is(export, "all parameters, in digits that read back to the bit");
+}
+
+const struct export_target export_json = {.name = "json", .prepare = json_prepare, .write = json_write};

@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "model_json.h"
+#include "json.h"
+#include "text_quote.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A member that is not as it should be. */
+static enum status bad(const char *name, const char *expected, struct error *error)
+{
+	return error_set(error, STATUS_FORMAT, "the member \"%s\" should be %s", name, expected);
+}
+
+static const char *text_of(const struct json *json, const char *name)
+{
+	const struct json *member = json_member(json, name);
+	return member && member->type == JSON_STRING ? member->text : "";
+}
+
+/* A number, or "inf"; NaN for anything else. */
+static double number_of(const struct json *value)
+{
+	if (value && value->type == JSON_NUMBER)
+		return value->number;
+	return value && value->type == JSON_STRING && !strcmp(value->text, "inf") ? INFINITY : NAN;
+}
+
+/* The numbers of an array, newly allocated; NULL: none, or out of memory. */
+static double *numbers_of(const struct json *array, size_t *n)
+{
+	if (!array || array->type != JSON_ARRAY || !array->n)
+		return NULL;
+	double *x = malloc(array->n * sizeof *x);
+	for (size_t i = 0; x && i < array->n; i++)
+		x[i] = number_of(&array->item[i]);
+	*n = array->n;
+	return x;
+}
+
+static enum status read_rgb(const struct json *json, const char *name, double rgb[3], struct error *error)
+{
+	const struct json *array = json_member(json, name);
+	if (!array || array->type != JSON_ARRAY || array->n != 3)
+		return bad(name, "three numbers", error);
+	for (int c = 0; c < 3; c++) {
+		rgb[c] = number_of(&array->item[c]);
+		if (!(rgb[c] >= 0 && rgb[c] <= 1e300))
+			return bad(name, "three numbers, none negative", error);
+	}
+	return STATUS_OK;
+}
+
+static enum status read_nodes(const struct json *json, struct model_json *read, struct error *error)
+{
+	const struct json *nodes = json_member(json, "nodes");
+	size_t n = 0, n_D = 0;
+	double *theta = numbers_of(json_member(nodes, "theta"), &n), *D = numbers_of(json_member(nodes, "D"), &n_D);
+	enum status status = STATUS_DOMAIN;
+	read->pwl = calloc(1, sizeof *read->pwl);
+	if (!read->pwl)
+		status = STATUS_NO_MEMORY;
+	else if (theta && D && n == n_D && n <= PWL_NODES_MAX)
+		status = pwl_init(read->pwl, (int)n, theta, D, NULL);
+	free(theta);
+	free(D);
+	if (status == STATUS_NO_MEMORY)
+		return error_set(error, status, "out of memory");
+	if (status)
+		return bad("nodes", "two arrays, theta from 0 to pi/2 and D", error);
+	ndf_from_pwl(&read->model.ndf, read->pwl);
+	return STATUS_OK;
+}
+
+static enum status read_ndf(const struct json *json, struct model_json *read, struct error *error)
+{
+	const struct ndf_class *class = ndf_find(text_of(json, "ndf"));
+	const struct json *parameters = json_member(json, "parameters");
+	double value[NDF_PARAMS_MAX];
+	enum lambda_form form;
+	if (!class)
+		return bad("ndf", "the name of a distribution", error);
+	if (lambda_form_find(text_of(json, "lambda"), &form))
+		return bad("lambda", "the name of a form of Lambda", error);
+	if (ndf_is_tabulated(class))
+		return read_nodes(json, read, error);
+	for (int i = 0; ndf_param_at(class, i); i++)
+		value[i] = number_of(json_member(parameters, ndf_param_at(class, i)->name));
+	if (ndf_init_params(&read->model.ndf, class, value))
+		return bad("parameters", "those of the distribution", error);
+	if (form != LAMBDA_EXACT && ndf_set_lambda_form(&read->model.ndf, form))
+		return bad("lambda", "a form that the distribution has", error);
+	return STATUS_OK;
+}
+
+static enum status read_terms(const struct json *json, struct model_json *read, struct fit_options *fit,
+			      struct error *error)
+{
+	struct cook_torrance *model = &read->model;
+	if (gaf_find(text_of(json, "gaf"), &model->gaf))
+		return bad("gaf", "the name of a masking-shadowing term", error);
+	if (fresnel_find(text_of(json, "fresnel"), &model->fresnel))
+		return bad("fresnel", "the name of a Fresnel term", error);
+	model->n = number_of(json_member(json, "ior"));
+	model->k = number_of(json_member(json, "k"));
+	if (!(model->n > 0 && model->n <= 1e75))
+		return bad("ior", "a positive number", error);
+	if (!(model->k >= 0 && model->k <= 1e75))
+		return bad("k", "a number, not negative", error);
+	fit->gaf = model->gaf;
+	fit->fresnel = model->fresnel;
+	fit->lambda = model->ndf.lambda_form;
+	return STATUS_OK;
+}
+
+static bool copy(const char *text, char **copied)
+{
+	*copied = *text ? strdup(text) : NULL;
+	return !*text || *copied;
+}
+
+static enum status read_fitted(const struct json *json, struct model_json *read, struct fit_options *fit,
+			       struct error *error)
+{
+	const struct json *fitted = json_member(json, "fitted");
+	fit->max_theta = number_of(json_member(fitted, "max_theta"));
+	read->error = number_of(json_member(fitted, "error"));
+	if (weight_find(text_of(fitted, "weight"), &fit->weight) || bins_find(text_of(fitted, "bins"), &fit->bins) ||
+	    !(fit->max_theta > 0 && fit->max_theta <= 90))
+		return bad("fitted", "an object with weight, bins and max_theta", error);
+	if (!copy(text_of(json, "material"), &read->material) || !copy(text_of(fitted, "path"), &read->path))
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	return STATUS_OK;
+}
+
+static enum status read_model(const struct json *json, struct model_json *read, struct fit_options *fit,
+			      struct error *error)
+{
+	if (strcmp(text_of(json, "format"), "stdfit-model-1") != 0)
+		return bad("format", "\"stdfit-model-1\"", error);
+	enum status status = read_rgb(json, "kd", read->model.kd, error);
+	if (!status)
+		status = read_rgb(json, "ks", read->model.ks, error);
+	if (!status)
+		status = read_ndf(json, read, error);
+	if (!status)
+		status = read_terms(json, read, fit, error);
+	return status ? status : read_fitted(json, read, fit, error);
+}
+
+enum status model_json_read(const char *path, struct model_json *json, struct fit_options *fit, struct error *error)
+{
+	struct json tree;
+	struct error why;
+	char name[TEXT_QUOTE_SIZE];
+	*json = (struct model_json){0};
+	enum status status = json_read(path, &tree, error);
+	if (status)
+		return status;
+	status = read_model(&tree, json, fit, &why);
+	json_free(&tree);
+	if (!status)
+		return STATUS_OK;
+	model_json_free(json);
+	text_quote(path, name, sizeof name);
+	return error_set(error, status, "'%s' describes no model: %.200s", name, why.text);
+}
+
+void model_json_free(struct model_json *json)
+{
+	if (json->pwl)
+		pwl_free(json->pwl);
+	free(json->pwl);
+	free(json->material);
+	free(json->path);
+	*json = (struct model_json){0};
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* model_json - a model as JSON, with all that it takes to make it again, to the bit.
+ *
+ *     {
+ *       "format": "stdfit-model-1",
+ *       "comment": [...],                        for people
+ *       "material": "name",                      or null
+ *       "kd": [r, g, b], "ks": [r, g, b],        f_c = kd_c / pi + ks_c F D G / (4 cos_i cos_o)
+ *       "ndf": "std",                            a name of ndf.h
+ *       "parameters": {"sigma": s, ...},         as ndf_param_at() names them; infinity is "inf"
+ *       "nodes": {"theta": [...], "D": [...]},   pl instead: D, 1/sr, linear in theta, radians, from 0 to pi/2
+ *       "lambda": "exact",                       a name of lambda_form.h
+ *       "gaf": "uncorrelated", "fresnel": "dielectric", "ior": n, "k": k,
+ *       "fitted": {"path": ..., "weight": ..., "bins": ..., "max_theta": ..., "error": E}     path and E may be null
+ *     } */
+#ifndef MODEL_JSON_H
+#define MODEL_JSON_H
+
+#include "export.h"
+#include "pwl.h"
+
+/* struct model_json - a model that was read; what it owns is freed by model_json_free(). */
+struct model_json {
+	struct cook_torrance model;
+	struct pwl *pwl; /* the table of model.ndf, if that is pl */
+	char *material, *path;
+	double error; /* NaN: not known */
+};
+
+/* model_json_read - reads `path`; weight, bins, max_theta, gaf and fresnel go to *fit, too.
+ * Errors: STATUS_IO, STATUS_NO_MEMORY, STATUS_FORMAT (which member, what was expected). *json holds nothing then. */
+MUST_CHECK enum status model_json_read(const char *path, struct model_json *json, struct fit_options *fit,
+				       struct error *error);
+void model_json_free(struct model_json *json);
+
+#endif

@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "stand_in.h"
+#include "export_format.h"
+#include "model_table.h"
+#include "text_quote.h"
+
+#include <stdarg.h>
+#include <string.h>
+
+static bool is_gray(const double x[3])
+{
+	return x[0] == x[1] && x[1] == x[2];
+}
+
+static void add_text(char text[EXPORT_TEXT], const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static void add_text(char text[EXPORT_TEXT], const char *format, ...)
+{
+	const size_t used = strlen(text);
+	va_list list;
+	va_start(list, format);
+	vsnprintf(text + used, EXPORT_TEXT - used, format, list);
+	va_end(list);
+}
+
+/* GGX or Beckmann where the distribution is one of them under another name; false where it is neither. */
+static bool plain_ndf(const struct ndf *ndf, struct ndf *plain)
+{
+	const char *name = ndf_name(ndf->class);
+	const bool ggx = ndf->gamma == 2.0 && strcmp(name, "low") != 0;
+	const bool beckmann = isinf(ndf->gamma);
+	if ((!ggx && !beckmann) || ndf->lambda_form == LAMBDA_RATIONAL)
+		return false;
+	const double sigma = ndf->sigma_x / ndf->stretch;
+	return ndf_init(plain, ndf_find(ggx ? "ggx" : "beckmann"), sigma, sigma, NAN) == STATUS_OK;
+}
+
+static bool is_beckmann(const struct ndf *ndf)
+{
+	return strcmp(ndf_name(ndf->class), "beckmann") == 0;
+}
+
+/* What of the lobe has no counterpart. */
+static void describe_ndf(const struct ndf *ndf, char why[EXPORT_TEXT])
+{
+	add_text(why, " no NDF %s", ndf_name(ndf->class));
+	if (ndf_has_gamma(ndf->class))
+		add_text(why, " of gamma %.5g", ndf->gamma);
+	if (ndf->lambda_form == LAMBDA_RATIONAL)
+		add_text(why, " with the rational form of Lambda");
+	add_text(why, ",");
+}
+
+bool stand_in_needed(const struct target *target, const struct cook_torrance *model, char why[EXPORT_TEXT])
+{
+	char text[EXPORT_TEXT] = "";
+	struct ndf plain;
+	if (!(export_max(model->ks) > 0))
+		return false;
+	if (!plain_ndf(&model->ndf, &plain) || (is_beckmann(&plain) && !target->beckmann))
+		describe_ndf(&model->ndf, text);
+	if (model->gaf != target->gaf)
+		add_text(text, " no %s G,", gaf_name(model->gaf));
+	if (!(target->fresnel & 1u << model->fresnel))
+		add_text(text, " no Fresnel term %s,", fresnel_name(model->fresnel));
+	if (target->sigma_max > 0 && model->ndf.sigma_x / model->ndf.stretch > target->sigma_max)
+		add_text(text, " no roughness of %.5g,", model->ndf.sigma_x);
+	const size_t length = strlen(text);
+	if (why && length)
+		snprintf(why, EXPORT_TEXT, "%.*s", (int)length - 1, text);
+	return length > 0;
+}
+
+const struct samples *stand_in_samples(const struct export_source *source, struct samples *own)
+{
+	*own = (struct samples){0};
+	if (source->samples)
+		return source->samples;
+	return model_table(source->model, source->fit->bins, 180, source->fit->threads, own) ? NULL : own;
+}
+
+/* The options of the fit: the source's data and weight, the target's lobe. */
+static struct fit_options options_for(const struct target *target, const struct export_source *source)
+{
+	const struct cook_torrance *model = source->model;
+	struct fit_options fit = *source->fit;
+	struct ndf plain;
+	const bool beckmann = target->beckmann && plain_ndf(&model->ndf, &plain) && is_beckmann(&plain);
+	fit.ndf[0] = ndf_find(beckmann ? "beckmann" : "ggx");
+	fit.n_ndf = 1;
+	fit.gaf = target->gaf;
+	fit.fresnel = target->fresnel & 1u << model->fresnel ? model->fresnel : target->instead;
+	fit.lambda = LAMBDA_EXACT;
+	fit.sigma = fit.gamma = fit.ior = NAN;
+	fit.diffuse = export_max(model->kd) > 0;
+	fit.specular = true;
+	fit.unbounded = false;
+	fit.gray = is_gray(model->kd) && is_gray(model->ks);
+	fit.starts = 0;
+	fit.algorithm = NULL;
+	fit.trace = NULL;
+	return fit;
+}
+
+static enum status fit_once(const struct fit_context *context, const struct samples *samples,
+			    const struct fit_options *fit, bool gray, struct cook_torrance *model, struct error *error)
+{
+	struct fit_result result;
+	const enum status status = fit_run(context, samples, fit, &result, error);
+	if (status)
+		return status;
+	*model = result.model;
+	if (gray)
+		model->ks[0] = model->ks[1] = model->ks[2] = (model->ks[0] + model->ks[1] + model->ks[2]) / 3;
+	fit_result_free(&result);
+	return STATUS_OK;
+}
+
+static bool fits_blend(const struct cook_torrance *model)
+{
+	return export_max(model->kd) + export_max(model->ks) <= 1;
+}
+
+static enum status refuse_blend(const struct target *target, const struct cook_torrance *model, struct error *error)
+{
+	return error_set(error, STATUS_UNSUPPORTED,
+			 "%s adds up two lobes by weights that make 1: no kd up to %.5g with ks "
+			 "up to %.5g",
+			 target->name, export_max(model->kd), export_max(model->ks));
+}
+
+enum { BLEND_STEPS = 8 };
+
+/* A larger index reflects more, and so leaves a smaller ks: the smallest index, nearly, whose best kd and ks add up to
+ * no more than 1. */
+static enum status fit_blend(const struct fit_context *context, const struct samples *samples, struct fit_options *fit,
+			     const struct target *target, struct cook_torrance *model, struct error *error)
+{
+	double low = log(model->n), high = log(FIT_IOR_MAX);
+	struct cook_torrance best = *model;
+	if (model->fresnel == FRESNEL_NONE)
+		return refuse_blend(target, model, error);
+	for (int i = 0; i < BLEND_STEPS; i++) {
+		const double at = i ? 0.5 * (low + high) : high;
+		struct cook_torrance tried;
+		fit->ior = i ? exp(at) : FIT_IOR_MAX;
+		const enum status status = fit_once(context, samples, fit, target->gray, &tried, error);
+		if (status)
+			return status;
+		if (fits_blend(&tried)) {
+			best = tried;
+			high = at;
+		} else if (i == 0) {
+			return refuse_blend(target, model, error);
+		} else {
+			low = at;
+		}
+	}
+	*model = best;
+	return STATUS_OK;
+}
+
+/* Fits the stand-in into export->model. */
+static enum status fit_stand_in(struct export *export, const struct target *target, const struct samples *samples,
+				struct error *error)
+{
+	struct fit_options fit = options_for(target, &export->source);
+	struct fit_context *context = NULL;
+	enum status status = fit_context_new(&context, samples->n_phi_d, &fit);
+	if (status)
+		return error_set(error, status, "%s", status_str(status));
+	status = fit_once(context, samples, &fit, target->gray, &export->model, error);
+	if (!status && target->sigma_max > 0 && export->model.ndf.sigma_x > target->sigma_max) {
+		fit.sigma = target->sigma_max;
+		status = fit_once(context, samples, &fit, target->gray, &export->model, error);
+	}
+	if (!status && target->blend && !fits_blend(&export->model))
+		status = fit_blend(context, samples, &fit, target, &export->model, error);
+	fit_context_free(context);
+	return status;
+}
+
+static enum status error_of(const struct export *export, const struct samples *samples,
+			    const struct cook_torrance *model, double *value, struct error *error)
+{
+	struct fit_metrics metrics;
+	const enum status status = fit_eval(samples, model, export->source.fit, &metrics, error);
+	if (!status)
+		*value = metrics.error[export->source.fit->weight];
+	return status;
+}
+
+/* What the errors are against, for people. */
+static void name_data(const struct export_source *source, char name[TEXT_QUOTE_SIZE])
+{
+	if (source->samples && source->path)
+		text_quote(source->path, name, TEXT_QUOTE_SIZE);
+	else
+		snprintf(name, TEXT_QUOTE_SIZE, "%s",
+			 source->samples ? "the measurement" : "a table of the model itself");
+}
+
+static enum status tell_cost(struct export *export, const struct samples *samples, struct error *error)
+{
+	const struct fit_options *fit = export->source.fit;
+	double before, after;
+	char name[TEXT_QUOTE_SIZE];
+	enum status status = error_of(export, samples, export->source.model, &before, error);
+	if (!status)
+		status = error_of(export, samples, &export->model, &after, error);
+	if (status)
+		return status;
+	name_data(&export->source, name);
+	snprintf(export->cost, sizeof export->cost,
+		 "error of the model %.5g, of what stands here %.5g (weight %s, against %s)",
+		 export->source.samples ? before : 0.0, after, weight_name(fit->weight), name);
+	return STATUS_OK;
+}
+
+/* Uses the model as it is, its distribution under the name that the target has for it. */
+static void take(struct export *export)
+{
+	struct ndf plain;
+	export->model = *export->source.model;
+	if (plain_ndf(&export->model.ndf, &plain))
+		export->model.ndf = plain;
+}
+
+static enum status check_sigma(const struct export *export, const struct target *target, struct error *error)
+{
+	const double sigma = export->model.ndf.sigma_x;
+	if (!(export_max(export->model.ks) > 0) || sigma >= target->sigma_min)
+		return STATUS_OK;
+	return error_set(error, STATUS_UNSUPPORTED, "%s takes a roughness of %.5g for a mirror", target->name, sigma);
+}
+
+enum status stand_in_prepare(struct export *export, const struct target *target, struct error *error)
+{
+	char lacks[EXPORT_TEXT] = "";
+	const struct cook_torrance *given = export->source.model;
+	struct samples own;
+	take(export);
+	if (target->gray && !is_gray(given->ks))
+		return error_set(error, STATUS_UNSUPPORTED,
+				 "%s has one factor for all channels: ks %.5g, %.5g, %.5g would lose "
+				 "its colour (--gray fits without)",
+				 target->name, given->ks[0], given->ks[1], given->ks[2]);
+	export->stand_in = stand_in_needed(target, given, lacks);
+	if (!export->stand_in && target->blend && !fits_blend(given) && export_max(given->ks) > 0) {
+		export->stand_in = true;
+		snprintf(lacks, sizeof lacks, " no kd + ks of %.5g, more than 1",
+			 export_max(given->kd) + export_max(given->ks));
+	}
+	if (!export->stand_in)
+		return check_sigma(export, target, error);
+	const struct samples *samples = stand_in_samples(&export->source, &own);
+	enum status status = samples ? fit_stand_in(export, target, samples, error)
+				     : error_set(error, STATUS_NO_MEMORY, "out of memory");
+	if (!status)
+		status = tell_cost(export, samples, error);
+	samples_free(&own);
+	if (!status)
+		status = check_sigma(export, target, error);
+	snprintf(export->why, sizeof export->why, "approximate: %s has%s; %s%s was fitted in its place", target->name,
+		 lacks, ndf_name(export->model.ndf.class), is_beckmann(&export->model.ndf) ? "" : " (gamma 2)");
+	return status;
+}

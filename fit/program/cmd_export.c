@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* stdfit export - a model in the form of another program. */
+#include "atomic_file.h"
+#include "merl.h"
+#include "model_source.h"
+#include "report.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int check(const struct options *options)
+{
+	if (options->n_paths > 1)
+		return options_usage(COMMAND_EXPORT, "expected one FILE, found %d", options->n_paths);
+	const int code = model_source_check(options, true);
+	if (code >= 0)
+		return code;
+	if (!options_given(options, "format"))
+		return options_usage(COMMAND_EXPORT, "expected --format");
+	if (model_source_kind(options) == SOURCE_FIT && !options->n_paths)
+		return options_usage(COMMAND_EXPORT, "expected FILE to fit, or --from, or --kd and --ks");
+	if (model_source_kind(options) != SOURCE_ROWS && options->fit.n_ndf != 1)
+		return options_usage(COMMAND_EXPORT, "--ndf takes one name here");
+	if (options->format == EXPORT_MERL && !options->output)
+		return options_usage(COMMAND_EXPORT, "--format merl is binary and needs -o FILE");
+	return -1;
+}
+
+/* Whether these are the bytes that the row was made from, if it says from which. */
+static bool is_input(const struct source_model *model, const struct samples *samples)
+{
+	char input[RESULT_INPUT_SIZE];
+	result_input(input, samples);
+	return !*model->input || !strcmp(input, model->input);
+}
+
+/* Reads the measurement where the export has use for it: the FILE given, or the one that the row is of, if that is there
+ * and still the same. Else it does without; the export tells what its errors are against. Returns the path, or NULL. */
+static const char *find_samples(const struct options *options, const struct source_model *model,
+				struct samples *samples)
+{
+	const char *path = options->n_paths ? options->path[0] : model->path;
+	if (samples->value[0])
+		return path;
+	if (!path || !export_wants_samples(options->format, &model->model) ||
+	    merl_read(path, options->fit.threads, samples, NULL))
+		return NULL;
+	if (options->n_paths || is_input(model, samples))
+		return path;
+	samples_free(samples);
+	return NULL;
+}
+
+static enum status write_merl(const struct export *export, const char *path, struct error *error)
+{
+	struct samples samples;
+	enum status status = export_table(export, &samples);
+	if (status)
+		return error_set(error, status, "%s", status_str(status));
+	status = merl_write(path, &samples, error);
+	samples_free(&samples);
+	return status;
+}
+
+static enum status put_text(const char *text, size_t size, const char *path, struct error *error)
+{
+	struct atomic_file file;
+	if (!path) {
+		fwrite(text, 1, size, stdout); /* main() tells when that fails */
+		return STATUS_OK;
+	}
+	const enum status status = atomic_file_open(&file, path, error);
+	if (status)
+		return status;
+	fwrite(text, 1, size, file.stream);
+	return atomic_file_commit(&file, error);
+}
+
+/* Into memory first: what cannot be written leaves no half output. */
+static enum status write_text(const struct export *export, const char *path, struct error *error)
+{
+	char *text = NULL;
+	size_t size;
+	FILE *memory = open_memstream(&text, &size);
+	if (!memory)
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	struct error why;
+	enum status status = export_write(export, memory, &why);
+	const bool failed = ferror(memory);
+	if ((fclose(memory) || failed) && !status)
+		status = error_set(&why, STATUS_NO_MEMORY, "out of memory");
+	if (status)
+		error_set(error, status, "cannot export to %s: %.400s", export_format_name(export->format), why.text);
+	else
+		status = put_text(text, size, path, error);
+	free(text);
+	return status;
+}
+
+/* Writes the one model; tells on standard error what a binary file has no room for. */
+static enum status write_model(const struct options *options, const struct source_model *model, struct samples *samples,
+			       struct error *error)
+{
+	const char *measured = find_samples(options, model, samples);
+	const struct export_source source = {.model = &model->model,
+					     .fit = &model->fit,
+					     .error = model->error,
+					     .material = model->material,
+					     .path = measured ? measured : model->path,
+					     .samples = measured ? samples : NULL};
+	struct export export;
+	struct error why;
+	enum status status = export_prepare(&export, options->format, &source, &why);
+	if (status)
+		return error_set(error, status, "cannot export to %s: %.400s", export_format_name(options->format),
+				 why.text);
+	if (*options->cancel)
+		return STATUS_INTERRUPTED;
+	if (options->format != EXPORT_MERL)
+		return write_text(&export, options->output, error);
+	status = write_merl(&export, options->output, error);
+	if (!status && !options->quiet)
+		fprintf(stderr, "%s\n", export.why);
+	return status;
+}
+
+static enum status run(const struct options *options, struct error *error)
+{
+	struct model_source source;
+	enum status status = model_source_read(options, options->n_paths ? options->path[0] : NULL, &source, error);
+	if (status)
+		return status;
+	if (source.n > 1)
+		status =
+			error_set(error, STATUS_FORMAT, "%zu rows are meant: choose one with --ndf or --row", source.n);
+	else
+		status = write_model(options, &source.model[0], &source.samples, error);
+	model_source_free(&source);
+	return status;
+}
+
+int cmd_export(int argc, char **argv, atomic_bool *cancel)
+{
+	struct options options;
+	struct error error = {""};
+	int code = options_parse(&options, COMMAND_EXPORT, argc, argv, cancel);
+	if (code < 0)
+		code = check(&options);
+	if (code >= 0)
+		return code;
+	const enum status status = run(&options, &error);
+	if (*cancel || status == STATUS_INTERRUPTED)
+		return EXIT_INTERRUPTED;
+	if (status)
+		report_error("%s", error.text);
+	return status ? EXIT_FAILED : EXIT_DONE;
+}

@@ -1,0 +1,355 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The GLSL of BRDF Explorer files, run: the same values as cook_torrance_f() for every NDF, G, F and form of Lambda, in
+ * double and in float arithmetic; and glslangValidator takes it, where that is installed. */
+#include "check.h"
+#include "export.h"
+#include "glsl.h"
+#include "make_table.h"
+#include "pwl.h"
+
+#include <unistd.h>
+
+/* What the header of an export promises: the formulas in double arithmetic, relative; and in float, relative, growing
+ * with the depth of the tail. */
+#define TOLERANCE_DOUBLE 2e-7
+#define TOLERANCE_FLOAT 3e-6
+#define TOLERANCE_TAIL 3e-6
+
+static char *export_text(const struct cook_torrance *model)
+{
+	const struct fit_options fit = fit_options_default();
+	const struct export_source source = {.model = model, .fit = &fit, .error = NAN, .material = "a-b"};
+	struct export export;
+	struct error error = {""};
+	char *text = NULL;
+	size_t size;
+	FILE *file = open_memstream(&text, &size);
+
+	assert_non_null(file);
+	if (export_prepare(&export, EXPORT_BRDF, &source, &error) || export_write(&export, file, &error))
+		fail_msg("%s", error.text);
+	assert_false(export.stand_in);
+	assert_int_equal(fclose(file), 0);
+	return text;
+}
+
+/* The text between the lines ::begin NAME and ::end NAME, newly allocated. */
+static char *section(const char *text, const char *name)
+{
+	char begin[64], end[64];
+
+	snprintf(begin, sizeof begin, "\n::begin %s\n", name);
+	snprintf(end, sizeof end, "\n::end %s\n", name);
+	const char *from = strstr(text, begin), *to = strstr(text, end);
+	if (!from || !to)
+		fail_msg("no section '%s'", name);
+	from += strlen(begin);
+	return strndup(from, (size_t)(to - from) + 1);
+}
+
+/* The shader of an export, with its parameters as uniforms at their defaults. */
+static struct glsl *open_shader(const char *text, bool rounds)
+{
+	char *parameters = section(text, "parameters"), *shader = section(text, "shader");
+	struct glsl *glsl = glsl_open(shader, rounds);
+	char name[32];
+	int used, on;
+
+	for (const char *at = parameters; sscanf(at, "bool %31s %d\n%n", name, &on, &used) == 2; at += used)
+		glsl_declare(glsl, name, glsl_bool(on), true);
+	glsl_parse(glsl);
+	free(parameters);
+	free(shader);
+	return glsl;
+}
+
+static struct glsl_value vector(struct vec3 v)
+{
+	return (struct glsl_value){.type = GLSL_VEC3, .v = {v.x, v.y, v.z}};
+}
+
+static struct vec3 as_floats(struct vec3 v)
+{
+	return (struct vec3){glsl_to_float(v.x), glsl_to_float(v.y), glsl_to_float(v.z)};
+}
+
+static void shader_f(struct glsl *glsl, struct vec3 wi, struct vec3 wo, double f[3])
+{
+	const struct glsl_value argument[] = {vector(wi), vector(wo), vector((struct vec3){0, 0, 1}),
+					      vector((struct vec3){1, 0, 0}), vector((struct vec3){0, 1, 0})};
+	const struct glsl_value value = glsl_function(glsl, "BRDF", argument, 5);
+
+	assert_int_equal(value.type, GLSL_VEC3);
+	memcpy(f, value.v, sizeof value.v);
+}
+
+static struct vec3 direction(double theta, double phi)
+{
+	return (struct vec3){sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)};
+}
+
+/* Pairs of directions: around the mirror direction, anywhere, grazing, along the normal. */
+static void pick(int i, double sigma, unsigned *seed, struct vec3 *wi, struct vec3 *wo)
+{
+	const double theta = i % 4 ? 1.5 * random_unit(seed) : 1.5707963267 - exp(-12 * random_unit(seed));
+	const double spread = i % 2 ? sigma * 4 : 3;
+
+	*wi = i % 16 == 7 ? (struct vec3){0, 0, 1} : direction(theta, 6.28 * random_unit(seed));
+	const struct vec3 mirror = {-wi->x, -wi->y, wi->z};
+	struct vec3 off;
+	off.x = spread * (random_unit(seed) - 0.5);
+	off.y = spread * (random_unit(seed) - 0.5);
+	off.z = spread * (random_unit(seed) - 0.5);
+	*wo = vec3_unit(vec3_add(mirror, off));
+	if (wo->z <= 0)
+		wo->z = -wo->z + 1e-9;
+	*wo = vec3_unit(*wo);
+}
+
+enum { PAIRS = 48 };
+
+static void compare(const struct cook_torrance *model, const char *what)
+{
+	char *text = export_text(model), label[200];
+	struct glsl *exact = open_shader(text, false), *rounded = open_shader(text, true);
+	const double D0 = ndf_D(&model->ndf, (struct vec3){0, 0, 1});
+	unsigned seed = 7;
+
+	assert_memory_equal(text, "analytic\n# exact: ", 18);
+	for (int i = 0; i < PAIRS; i++) {
+		struct vec3 wi, wo;
+		double want[3], got[3];
+
+		pick(i, model->ndf.class == ndf_find("pl") ? 0.2 : model->ndf.sigma_x, &seed, &wi, &wo);
+		snprintf(label, sizeof label, "%s, pair %d", what, i);
+		cook_torrance_f(model, wi, wo, want);
+		shader_f(exact, wi, wo, got);
+		for (int c = 0; c < 3; c++)
+			check_rel(got[c], want[c], TOLERANCE_DOUBLE, label);
+
+		wi = as_floats(wi);
+		wo = as_floats(wo);
+		cook_torrance_f(model, wi, wo, want);
+		shader_f(rounded, wi, wo, got);
+		const double D = ndf_D(&model->ndf, vec3_unit(vec3_add(wi, wo)));
+		const double tail = D > 0 && D0 > 0 ? fabs(log(D / D0)) : 0;
+		for (int c = 0; c < 3; c++)
+			check_rel(got[c], want[c], TOLERANCE_FLOAT + TOLERANCE_TAIL * tail, label);
+	}
+	glsl_free(exact);
+	glsl_free(rounded);
+	free(text);
+}
+
+/* Values of a model below a float's range, far out in a Gaussian tail, are lost: kd is there to stay above. */
+static struct cook_torrance model_of(const struct ndf *ndf)
+{
+	return (struct cook_torrance){.ndf = *ndf,
+				      .gaf = GAF_UNCORRELATED,
+				      .fresnel = FRESNEL_DIELECTRIC,
+				      .n = 1.48,
+				      .k = 2.3,
+				      .kd = {0.31, 0.12, 0.047},
+				      .ks = {0.42, 0.63, 0.77}};
+}
+
+static const struct {
+	const char *ndf;
+	double sigma, gamma;
+} shapes[] = {
+	{"ggx", 0.013, 2},           {"ggx", 0.7, 2},        {"beckmann", 0.021, INFINITY},
+	{"beckmann", 1.3, INFINITY}, {"std", 0.31, 1.5001},  {"std", 0.09, 1.61},
+	{"std", 0.002, 1.8},         {"std", 0.4, 2},        {"std", 1.9, 2.4},
+	{"std", 0.15, 7.7},          {"std", 0.3, 40},       {"std", 0.2, 1000},
+	{"std", 0.11, INFINITY},     {"gtr", 0.17, 1.3},     {"gtr", 0.05, 2.9},
+	{"gtr", 1.7, 0.6},           {"gtr", 0.3, 1},        {"hyper-cauchy", 0.2, 2},
+	{"hyper-cauchy", 0.14, 1.8}, {"t-family", 0.2, 3.1}, {"low", 0.23, 1.2},
+	{"low", 0.03, 0.4},          {"low", 0.1, 900},
+};
+
+static void every_shape(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
+		struct ndf ndf;
+		char label[100];
+
+		assert_int_equal(
+			ndf_init(&ndf, ndf_find(shapes[i].ndf), shapes[i].sigma, shapes[i].sigma, shapes[i].gamma), 0);
+		snprintf(label, sizeof label, "%s %g %g", shapes[i].ndf, shapes[i].sigma, shapes[i].gamma);
+		const struct cook_torrance model = model_of(&ndf);
+		compare(&model, label);
+	}
+}
+
+static void make_pwl(struct pwl *pwl)
+{
+	double theta[94], D[94];
+
+	for (int i = 0; i < 94; i++) {
+		theta[i] = i < 93 ? M_PI_2 * i * i / (93.0 * 93) : M_PI_2;
+		D[i] = exp(-theta[i] / 0.1) + 0.01 * (1 + sin(40 * theta[i]));
+	}
+	assert_int_equal(pwl_init(pwl, 94, theta, D, NULL), STATUS_OK);
+}
+
+/* One shape of each NDF, with every G and F. */
+static void every_term(void **state)
+{
+	static const struct {
+		const char *ndf;
+		double gamma;
+	} kinds[] = {{"ggx", 2},        {"beckmann", INFINITY}, {"std", 1.7}, {"gtr", 1.6}, {"hyper-cauchy", 2.3},
+		     {"t-family", 2.7}, {"low", 1.4},           {"pl", 0}};
+	struct pwl pwl;
+
+	(void)state;
+	make_pwl(&pwl);
+	for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+		for (enum gaf gaf = 0; gaf < GAF_COUNT; gaf++)
+			for (enum fresnel fresnel = 0; fresnel < FRESNEL_COUNT; fresnel++) {
+				struct ndf ndf;
+				char label[100];
+
+				if (!strcmp(kinds[i].ndf, "pl"))
+					ndf_from_pwl(&ndf, &pwl);
+				else
+					assert_int_equal(
+						ndf_init(&ndf, ndf_find(kinds[i].ndf), 0.2, 0.2, kinds[i].gamma), 0);
+				struct cook_torrance model = model_of(&ndf);
+				model.gaf = gaf;
+				model.fresnel = fresnel;
+				snprintf(label, sizeof label, "%s, %s, %s", kinds[i].ndf, gaf_name(gaf),
+					 fresnel_name(fresnel));
+				compare(&model, label);
+			}
+	pwl_free(&pwl);
+}
+
+static void every_form_of_lambda(void **state)
+{
+	static const struct {
+		enum lambda_form form;
+		double gamma;
+	} forms[] = {{LAMBDA_2F1, 1.9},     {LAMBDA_INTEGER, 3},  {LAMBDA_HALF_INTEGER, 4.5}, {LAMBDA_RATIONAL, 1.6},
+		     {LAMBDA_RATIONAL, 40}, {LAMBDA_RATIONAL, 2}, {LAMBDA_RATIONAL, INFINITY}};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+		struct ndf ndf;
+		char label[100];
+
+		assert_int_equal(ndf_init(&ndf, ndf_find("std"), 0.3, 0.3, forms[i].gamma), STATUS_OK);
+		assert_int_equal(ndf_set_lambda_form(&ndf, forms[i].form), STATUS_OK);
+		const struct cook_torrance model = model_of(&ndf);
+		snprintf(label, sizeof label, "%s of gamma %g", lambda_form_name(forms[i].form), forms[i].gamma);
+		compare(&model, label);
+	}
+}
+
+static void indices_near_and_far(void **state)
+{
+	static const double n[] = {1.0001, 1.01, 3, 38.575, 100}, k[] = {0, 1e-3, 0.5, 8, 100};
+
+	(void)state;
+	for (int i = 0; i < 5; i++)
+		for (int j = 0; j < 5; j++) {
+			struct cook_torrance model = make_model("ggx", 0.4, 2, n[i]);
+			char label[100];
+
+			model.fresnel = j ? FRESNEL_CONDUCTOR : FRESNEL_DIELECTRIC;
+			model.k = k[j];
+			snprintf(label, sizeof label, "n %g, k %g", n[i], k[j]);
+			compare(&model, label);
+		}
+}
+
+static void only_one_term(void **state)
+{
+	struct cook_torrance model = make_model("std", 0.2, 1.8, 1.5);
+
+	(void)state;
+	memset(model.ks, 0, sizeof model.ks);
+	compare(&model, "no lobe");
+	model = make_model("ggx", 0.6, 2, 1.5);
+	memset(model.kd, 0, sizeof model.kd);
+	compare(&model, "no diffuse term");
+}
+
+/* Constants that no float holds are refused, and nothing promised. */
+static void out_of_range_is_refused(void **state)
+{
+	const struct fit_options fit = fit_options_default();
+	struct cook_torrance model = make_model("ggx", 1e-44, 2, 1.5);
+	const struct export_source source = {.model = &model, .fit = &fit, .error = NAN};
+	struct export export;
+	struct error error = {""};
+	FILE *file = fopen("/dev/null", "w");
+
+	(void)state;
+	assert_int_equal(export_prepare(&export, EXPORT_BRDF, &source, &error), STATUS_OK);
+	assert_int_equal(export_write(&export, file, &error), STATUS_UNSUPPORTED);
+	assert_non_null(strstr(error.text, "out of the range"));
+	fclose(file);
+}
+
+/* The shader as BRDF Explorer wraps it: uniforms before it, a main() behind it. */
+static void write_fragment_shader(const char *path, const char *text)
+{
+	char *parameters = section(text, "parameters"), *shader = section(text, "shader"), name[32];
+	FILE *file = fopen(path, "w");
+	int used, on;
+
+	assert_non_null(file);
+	fprintf(file, "#version 410\nin vec3 L;\nin vec3 V;\nout vec4 color;\n");
+	for (const char *at = parameters; sscanf(at, "bool %31s %d\n%n", name, &on, &used) == 2; at += used)
+		fprintf(file, "uniform bool %s;\n", name);
+	fprintf(file,
+		"%s\nvoid main()\n{\n\tcolor = vec4(BRDF(L, V, vec3(0, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0)), 1);\n}\n",
+		shader);
+	assert_int_equal(fclose(file), 0);
+	free(parameters);
+	free(shader);
+}
+
+static void glslang_takes_it(void **state)
+{
+	static const char *const names[] = {"ggx", "beckmann", "std", "gtr", "low"};
+	char path[64] = "/tmp/stdfit-glsl-XXXXXX.frag", command[200];
+
+	(void)state;
+	if (system("command -v glslangValidator >/dev/null") != 0) {
+		print_message("glslangValidator (Debian: glslang-tools) is not installed\n");
+		skip();
+	}
+	const int fd = mkstemps(path, 5);
+	assert_true(fd >= 0);
+	close(fd);
+	snprintf(command, sizeof command, "glslangValidator -S frag %s >%s.out", path, path);
+	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+		for (enum fresnel fresnel = 0; fresnel < FRESNEL_COUNT; fresnel++) {
+			struct cook_torrance model = make_model(names[i], 0.2, 1.7, 1.5);
+			model.fresnel = fresnel;
+			model.gaf = (enum gaf)(fresnel % GAF_COUNT);
+			char *text = export_text(&model);
+			write_fragment_shader(path, text);
+			free(text);
+			if (system(command) != 0)
+				fail_msg("glslangValidator refuses %s", names[i]);
+		}
+	unlink(path);
+	strcat(path, ".out");
+	unlink(path);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(every_shape),          cmocka_unit_test(every_term),
+		cmocka_unit_test(every_form_of_lambda), cmocka_unit_test(indices_near_and_far),
+		cmocka_unit_test(only_one_term),        cmocka_unit_test(out_of_range_is_refused),
+		cmocka_unit_test(glslang_takes_it),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
