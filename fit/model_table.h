@@ -7,8 +7,8 @@
 #include "samples.h"
 
 /* model_table - makes *samples, to be freed with samples_free(): the model's value at each entry whose directions are
- * both above the horizon, rounded to float; the others masked. Returns as samples_alloc(). */
-MUST_CHECK enum status model_table(const struct cook_torrance *model, enum bins bins, int n_phi_d, int threads,
-				   struct samples *samples);
+ * both above the horizon and within max_theta degrees, rounded to float; the others masked. Returns as samples_alloc(). */
+MUST_CHECK enum status model_table(const struct cook_torrance *model, enum bins bins, int n_phi_d, double max_theta,
+				   int threads, struct samples *samples);
 
 #endif

@@ -47,7 +47,7 @@ enum status export_write(const struct export *export, FILE *file, struct error *
 
 enum status export_table(const struct export *export, struct samples *samples)
 {
-	return model_table(&export->model, export->source.fit->bins, 180, export->source.fit->threads, samples);
+	return model_table(&export->model, export->source.fit->bins, 180, 90, export->source.fit->threads, samples);
 }
 
 enum status export_as_it_is(struct export *export, const char *text)

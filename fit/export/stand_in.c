@@ -76,7 +76,9 @@ const struct samples *stand_in_samples(const struct export_source *source, struc
 	*own = (struct samples){0};
 	if (source->samples)
 		return source->samples;
-	return model_table(source->model, source->fit->bins, 180, source->fit->threads, own) ? NULL : own;
+	return model_table(source->model, source->fit->bins, 180, source->fit->max_theta, source->fit->threads, own)
+		       ? NULL
+		       : own;
 }
 
 /* The options of the fit: the source's data and weight, the target's lobe. */

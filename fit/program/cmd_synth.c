@@ -28,7 +28,7 @@ static enum status add_noise(struct samples *samples, double noise, uint64_t see
 static enum status synthesise(const struct options *options, const struct cook_torrance *model, struct error *error)
 {
 	struct samples samples;
-	enum status status = model_table(model, options->fit.bins, options->n_phi_d, options->fit.threads, &samples);
+	enum status status = model_table(model, options->fit.bins, options->n_phi_d, 90, options->fit.threads, &samples);
 	if (status)
 		return error_set(error, status, "%s", status_str(status));
 	if (options->noise > 0)

@@ -1,0 +1,697 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* stdfit export, read back: MERL and JSON to the bit, Mitsuba, pbrt and glTF by what their numbers mean; stand-ins and
+ * the errors they tell; refusals. The GLSL has a test of its own. Runs $STDFIT or build/stdfit. */
+#include "json.h"
+#include "make_table.h"
+#include "merl.h"
+#include "model_json.h"
+#include "model_table.h"
+#include "run_program.h"
+#include "table.h"
+#include "xml.h"
+
+#define LOBE "--kd 0.31,0.12,0.047 --ks 0.42,0.53,0.6"
+/* What has to be fitted is fitted to few entries. */
+#define SMALL "--max-theta 25 --threads 1"
+
+static struct cook_torrance given(const char *ndf, double sigma, double gamma, double n)
+{
+	struct cook_torrance model = make_model(ndf, sigma, gamma, n);
+	static const double ks[3] = {0.42, 0.53, 0.6};
+
+	memcpy(model.ks, ks, sizeof ks);
+	return model;
+}
+
+static void export_it(const char *arguments)
+{
+	char *command;
+
+	assert_true(asprintf(&command, "export %s", arguments) > 0);
+	stdfit(command);
+	free(command);
+	expect_code(0);
+}
+
+static void directions(int i, struct vec3 *wi, struct vec3 *wo)
+{
+	unsigned seed = 77u + 13u * (unsigned)i;
+	const double theta_i = 1.57 * random_unit(&seed), theta_o = 1.57 * random_unit(&seed);
+	const double phi = 3.1 + 0.3 * random_unit(&seed) * (i % 8);
+
+	*wi = (struct vec3){sin(theta_i), 0, cos(theta_i)};
+	*wo = (struct vec3){sin(theta_o) * cos(phi), sin(theta_o) * sin(phi), cos(theta_o)};
+}
+
+/* The two models have the same values. */
+static void expect_same(const struct cook_torrance *got, const struct cook_torrance *want, double tolerance)
+{
+	for (int i = 0; i < 200; i++) {
+		struct vec3 wi, wo;
+		double f[3], g[3];
+
+		directions(i, &wi, &wo);
+		cook_torrance_f(got, wi, wo, f);
+		cook_torrance_f(want, wi, wo, g);
+		for (int c = 0; c < 3; c++)
+			check_rel(f[c], g[c], tolerance, "value");
+	}
+}
+
+/* The error of a model on a table, as the first number behind the words in the header tells it. */
+static void expect_told(const char *words, double error)
+{
+	const char *at = strstr(last.out, words);
+
+	if (!at)
+		fail_msg("no '%s' in %.600s", words, last.out);
+	check_rel(strtod(at + strlen(words), NULL), error, 1e-4, words);
+}
+
+static double error_on(const struct cook_torrance *truth, const struct cook_torrance *model)
+{
+	struct fit_options options = fit_options_default();
+	struct samples samples;
+	struct fit_metrics metrics;
+	struct error error = {""};
+
+	options.max_theta = 25;
+	assert_int_equal(model_table(truth, BINS_NODE, 180, 25, 1, &samples), STATUS_OK);
+	assert_int_equal(fit_eval(&samples, model, &options, &metrics, &error), STATUS_OK);
+	samples_free(&samples);
+	return metrics.error[WEIGHT_NONE];
+}
+
+/* Mitsuba 3 */
+
+static double attribute_number(const struct xml *parent, const char *tag, const char *name)
+{
+	const struct xml *xml = xml_named(parent, name);
+	char *end;
+
+	if (!xml)
+		fail_msg("no %s", name);
+	assert_string_equal(xml->tag, tag);
+	const double x = strtod(xml_get(xml, "value"), &end);
+	assert_true(*xml_get(xml, "value") && !*end);
+	return x;
+}
+
+static void attribute_rgb(const struct xml *parent, const char *name, double scale, double rgb[3])
+{
+	const struct xml *xml = xml_named(parent, name);
+	int used = 0;
+
+	if (!xml || sscanf(xml_get(xml, "value"), "%lf, %lf, %lf%n", &rgb[0], &rgb[1], &rgb[2], &used) != 3)
+		fail_msg("no %s", name);
+	assert_string_equal(xml->tag, "rgb");
+	assert_int_equal(xml_get(xml, "value")[used], '\0');
+	for (int c = 0; c < 3; c++) {
+		check_between(rgb[c], 0, 1, "a reflectance of Mitsuba's");
+		rgb[c] *= scale;
+	}
+}
+
+static void read_diffuse(const struct xml *bsdf, double weight, struct cook_torrance *model)
+{
+	assert_string_equal(xml_get(bsdf, "type"), "diffuse");
+	attribute_rgb(bsdf, "reflectance", weight, model->kd);
+}
+
+static void read_lobe(const struct xml *bsdf, double weight, struct cook_torrance *model)
+{
+	const struct xml *distribution = xml_named(bsdf, "distribution"), *material = xml_named(bsdf, "material");
+	const double alpha = attribute_number(bsdf, "float", "alpha");
+
+	assert_string_equal(xml_get(bsdf, "type"), "roughconductor");
+	assert_non_null(distribution);
+	assert_int_equal(ndf_init(&model->ndf, ndf_find(xml_get(distribution, "value")), alpha, alpha, NAN), STATUS_OK);
+	attribute_rgb(bsdf, "specular_reflectance", weight, model->ks);
+	if (material) {
+		assert_string_equal(xml_get(material, "value"), "none");
+		model->fresnel = FRESNEL_NONE;
+		return;
+	}
+	model->fresnel = FRESNEL_CONDUCTOR; /* of k = 0: the dielectric form */
+	model->n = attribute_number(bsdf, "spectrum", "eta");
+	model->k = attribute_number(bsdf, "spectrum", "k");
+}
+
+/* What the scene in last.out says. */
+static struct cook_torrance read_mitsuba(void)
+{
+	struct xml *scene = xml_parse(last.out);
+	struct cook_torrance model = {.gaf = GAF_UNCORRELATED, .n = 1.5};
+
+	assert_int_equal(ndf_init(&model.ndf, ndf_find("ggx"), 1, 1, 2), STATUS_OK);
+	assert_string_equal(scene->tag, "scene");
+	assert_int_equal(scene->n_children, 1);
+	const struct xml *bsdf = scene->child[0];
+	if (!strcmp(xml_get(bsdf, "type"), "blendbsdf")) {
+		const double weight = attribute_number(bsdf, "float", "weight");
+		assert_non_null(xml_named(bsdf, "bsdf_0"));
+		assert_non_null(xml_named(bsdf, "bsdf_1"));
+		check_between(weight, 0, 1, "weight");
+		read_diffuse(xml_named(bsdf, "bsdf_0"), 1 - weight, &model);
+		read_lobe(xml_named(bsdf, "bsdf_1"), weight, &model);
+	} else if (!strcmp(xml_get(bsdf, "type"), "diffuse")) {
+		read_diffuse(bsdf, 1, &model);
+	} else {
+		read_lobe(bsdf, 1, &model);
+	}
+	xml_free(scene);
+	return model;
+}
+
+static void expect_mitsuba(const char *arguments, const char *how, struct cook_torrance want)
+{
+	char first[64];
+
+	export_it(arguments);
+	snprintf(first, sizeof first, "<!-- %s", how);
+	assert_memory_equal(last.out, first, strlen(first));
+	const struct cook_torrance got = read_mitsuba();
+	expect_same(&got, &want, 2e-15);
+}
+
+static void mitsuba_says_what_it_can(void **state)
+{
+	struct cook_torrance model = given("ggx", 0.23, 2, 1.61);
+
+	(void)state;
+	memcpy(model.ks, (double[]){0.42, 0.53, 0.6}, sizeof model.ks);
+	expect_mitsuba("--format mitsuba " LOBE " --ndf ggx --sigma 0.23 --ior 1.61", "exact: ", model);
+	model.fresnel = FRESNEL_NONE;
+	expect_mitsuba("--format mitsuba " LOBE " --ndf ggx --sigma 0.23 --fresnel none", "exact: ", model);
+	model.fresnel = FRESNEL_CONDUCTOR;
+	model.k = 3.25;
+	expect_mitsuba("--format mitsuba " LOBE
+		       " --ndf std --gamma 2 --sigma 0.23 --ior 1.61 --k 3.25 --fresnel conductor",
+		       "exact: ", model);
+	model = given("beckmann", 0.5, INFINITY, 1.5);
+	expect_mitsuba("--format mitsuba " LOBE " --ndf std --gamma inf --sigma 0.5", "approximate: the model itself",
+		       model);
+	model = given("ggx", 0.5, 2, 1.5);
+	memset(model.kd, 0, sizeof model.kd);
+	expect_mitsuba("--format mitsuba --ks 0.42,0.53,0.6 --ndf ggx --sigma 0.5", "exact: ", model);
+	model = given("ggx", 0.5, 2, 1.5);
+	memset(model.ks, 0, sizeof model.ks);
+	expect_mitsuba("--format mitsuba --kd 0.31,0.12,0.047", "exact: ", model);
+}
+
+static void mitsuba_gets_a_stand_in(void **state)
+{
+	const struct cook_torrance truth = given("std", 0.2, 1.7, 1.5);
+
+	(void)state;
+	export_it(SMALL " --format mitsuba " LOBE " --ndf std --gamma 1.7 --sigma 0.2");
+	expect_out(
+		"<!-- approximate: Mitsuba 3 has no NDF std of gamma 1.7; ggx (gamma 2) was fitted in its place -->");
+	expect_out("error of the model 0, of what stands here");
+	const struct cook_torrance got = read_mitsuba();
+	assert_string_equal(ndf_name(got.ndf.class), "ggx");
+	expect_told("of what stands here ", error_on(&truth, &got));
+	/* It is a fit: dropping gamma alone does worse. */
+	struct cook_torrance dropped = given("ggx", 0.2, 2, 1.5);
+	assert_true(error_on(&truth, &got) < 0.8 * error_on(&truth, &dropped));
+}
+
+static void mitsuba_blends_within_one(void **state)
+{
+	struct cook_torrance truth = make_model("ggx", 0.3, 2, 1.4);
+
+	(void)state;
+	for (int c = 0; c < 3; c++) {
+		truth.kd[c] = 0.3;
+		truth.ks[c] = 0.9;
+	}
+	export_it(SMALL " --format mitsuba --kd 0.3 --ks 0.9 --ndf ggx --sigma 0.3 --ior 1.4");
+	expect_out("no kd + ks of 1.2, more than 1");
+	const struct cook_torrance got = read_mitsuba();
+	assert_true(got.kd[0] + got.ks[0] <= 1 + 1e-15);
+	assert_true(got.n > 1.4);
+	expect_told("of what stands here ", error_on(&truth, &got));
+	check_between(error_on(&truth, &got), 1e-6, 0.1, "error of the blend");
+	stdfit("export --format mitsuba --kd 0.6 --ks 0.9 --ndf ggx --sigma 0.3 --fresnel none");
+	expect_error(1, "kd up to 0.6");
+	stdfit("export --format mitsuba --kd 1.2");
+	expect_error(1, "no reflectance above 1");
+}
+
+static void xmllint_takes_it(void **state)
+{
+	(void)state;
+	if (system("command -v xmllint >/dev/null") != 0) {
+		print_message("xmllint (Debian: libxml2-utils) is not installed\n");
+		skip();
+	}
+	shell("\"$STDFIT\" export --format mitsuba --kd 0.2 --ks 0.3 --sigma 0.2 --ndf ggx | xmllint --noout -");
+	expect_code(0);
+}
+
+/* pbrt-v4 */
+
+/* The numbers in brackets, or the one, behind a parameter's name. */
+static const char *parameter(const char *text, const char *name)
+{
+	const char *at = strstr(text, name);
+
+	if (!at)
+		fail_msg("no %s in %s", name, text);
+	return at + strlen(name);
+}
+
+static struct cook_torrance read_pbrt(void)
+{
+	struct cook_torrance model = {.gaf = GAF_CORRELATED, .fresnel = FRESNEL_CONDUCTOR};
+	double low, high;
+
+	assert_int_equal(sscanf(parameter(last.out, "\"rgb reflectance\""), " [ %lf %lf %lf ]", &model.kd[0],
+				&model.kd[1], &model.kd[2]),
+			 3);
+	assert_int_equal(sscanf(parameter(last.out, "\"spectrum eta\""), " [ %lf %lf %lf %lf ]", &low, &model.n, &high,
+				&model.n),
+			 4);
+	assert_true(low <= 360 && high >= 830);
+	assert_int_equal(
+		sscanf(parameter(last.out, "\"spectrum k\""), " [ %lf %lf %lf %lf ]", &low, &model.k, &high, &model.k),
+		4);
+	const double sigma = strtod(parameter(last.out, "\"float roughness\""), NULL);
+	parameter(last.out, "\"bool remaproughness\" false");
+	assert_int_equal(ndf_init(&model.ndf, ndf_find("ggx"), sigma, sigma, 2), STATUS_OK);
+	const double amount = strtod(parameter(last.out, "\"float amount\""), NULL);
+	check_between(amount, 0, 1, "amount");
+	for (int c = 0; c < 3; c++) {
+		check_between(model.kd[c], 0, 1, "a reflectance of pbrt's");
+		model.kd[c] *= 1 - amount;
+		model.ks[c] = amount;
+	}
+	return model;
+}
+
+static void pbrt_says_what_it_can(void **state)
+{
+	struct cook_torrance model = given("ggx", 0.23, 2, 1.61);
+
+	(void)state;
+	model.gaf = GAF_CORRELATED;
+	for (int c = 0; c < 3; c++)
+		model.ks[c] = 0.55;
+	export_it("--format pbrt --kd 0.31,0.12,0.047 --ks 0.55 --ndf ggx --sigma 0.23 --ior 1.61 --gaf correlated");
+	assert_memory_equal(last.out, "# exact: ", 9);
+	struct cook_torrance got = read_pbrt();
+	expect_same(&got, &model, 2e-15);
+	assert_null(strstr(last.out, "--"));
+
+	export_it(SMALL " --format pbrt --kd 0.3 --ks 0.5 --ndf std --gamma 1.8 --sigma 0.23");
+	expect_out("# approximate: pbrt-v4 has no NDF std of gamma 1.8, no uncorrelated G; ggx (gamma 2) was fitted");
+	got = read_pbrt();
+	struct cook_torrance truth = make_model("std", 0.23, 1.8, 1.5);
+	for (int c = 0; c < 3; c++) {
+		truth.kd[c] = 0.3;
+		truth.ks[c] = 0.5;
+	}
+	expect_told("of what stands here ", error_on(&truth, &got));
+
+	stdfit("export --format pbrt " LOBE " --ndf ggx --sigma 0.23");
+	expect_error(1, "would lose its colour");
+	stdfit("export --format pbrt --ks 0.5 --ndf ggx --sigma 0.0005 --gaf correlated");
+	expect_error(1, "for a mirror");
+}
+
+/* glTF */
+
+static double member_number(const struct json *json, const char *name)
+{
+	const struct json *member = json_member(json, name);
+
+	if (!member || member->type != JSON_NUMBER)
+		fail_msg("no number '%s'", name);
+	return member->number;
+}
+
+static void member_rgb(const struct json *json, const char *name, double rgb[3])
+{
+	const struct json *member = json_member(json, name);
+
+	assert_true(member && member->type == JSON_ARRAY && member->n >= 3);
+	for (int c = 0; c < 3; c++)
+		rgb[c] = member->item[c].number;
+}
+
+/* The material model of the glTF specification, from its own numbers. */
+struct gltf {
+	double base[3], roughness, ior, specular, color[3];
+};
+
+static struct gltf read_gltf(void)
+{
+	struct json json;
+	struct error error;
+	struct gltf g;
+
+	if (json_parse(last.out, &json, &error))
+		fail_msg("%s", error.text);
+	const struct json *material = &json_member(&json, "materials")->item[0];
+	const struct json *pbr = json_member(material, "pbrMetallicRoughness"),
+			  *more = json_member(material, "extensions");
+	const struct json *specular = json_member(more, "KHR_materials_specular");
+	assert_string_equal(json_member(json_member(&json, "asset"), "version")->text, "2.0");
+	assert_true(member_number(pbr, "metallicFactor") == 0);
+	member_rgb(pbr, "baseColorFactor", g.base);
+	g.roughness = member_number(pbr, "roughnessFactor");
+	g.ior = member_number(json_member(more, "KHR_materials_ior"), "ior");
+	g.specular = member_number(specular, "specularFactor");
+	member_rgb(specular, "specularColorFactor", g.color);
+	check_between(g.roughness, 0, 1, "roughness");
+	check_between(g.specular, 0, 1, "specular");
+	json_free(&json);
+	return g;
+}
+
+static void gltf_f(const struct gltf *g, struct vec3 l, struct vec3 v, double f[3])
+{
+	const double alpha = g->roughness * g->roughness, a2 = alpha * alpha;
+	const struct vec3 h = vec3_unit(vec3_add(l, v));
+	const double s = h.z * h.z * (a2 - 1) + 1, D = a2 / (M_PI * s * s);
+	const double V = 0.5 / (l.z * sqrt(a2 + (1 - a2) * v.z * v.z) + v.z * sqrt(a2 + (1 - a2) * l.z * l.z));
+	const double x = pow(1 - fabs(vec3_dot(v, h)), 5);
+	double fr[3], most = 0;
+
+	for (int c = 0; c < 3; c++) {
+		const double f0 = fmin(pow((1 - g->ior) / (1 + g->ior), 2) * g->color[c], 1);
+		fr[c] = f0 + (1 - f0) * x;
+		most = fmax(most, fr[c]);
+	}
+	for (int c = 0; c < 3; c++)
+		f[c] = (1 - g->specular * most) * g->base[c] / M_PI + g->specular * fr[c] * D * V;
+}
+
+static double gltf_error(const struct gltf *g, const struct cook_torrance *truth)
+{
+	double difference = 0, sum = 0;
+
+	for (int i = 0; i < SAMPLES_THETA_H; i++)
+		for (int j = 0; j < SAMPLES_THETA_D; j++)
+			for (int k = 0; k < 180; k++) {
+				struct vec3 wi, wo;
+				double f[3], m[3];
+
+				halfdiff_trig_dirs(bins_trig(BINS_NODE, i, j, k), &wi, &wo);
+				if (!entry_in_range(wi, wo, max_theta_cos(25)))
+					continue;
+				gltf_f(g, wi, wo, f);
+				cook_torrance_f(truth, wi, wo, m);
+				for (int c = 0; c < 3; c++) {
+					difference += fabs(f[c] - m[c]);
+					sum += m[c];
+				}
+			}
+	return difference / sum;
+}
+
+static void gltf_tells_its_error(void **state)
+{
+	struct cook_torrance truth = given("ggx", 0.09, 2, 1.5);
+
+	(void)state;
+	truth.gaf = GAF_CORRELATED;
+	truth.fresnel = FRESNEL_SCHLICK;
+	export_it(SMALL " --format gltf " LOBE " --ndf ggx --sigma 0.09 --gaf correlated --fresnel schlick");
+	expect_out("\"approximate: the model's own parameters, but glTF takes what the surface reflects");
+	struct gltf g = read_gltf();
+	check_rel(g.roughness, 0.3, 1e-15, "roughness");
+	check_rel(g.specular * g.color[0], 0.42, 1e-15, "colour");
+	expect_told("error of what a glTF viewer shows ", gltf_error(&g, &truth));
+
+	truth = given("std", 0.2, 1.7, 1.5);
+	export_it(SMALL " --format gltf " LOBE " --sigma 0.2 --gamma 1.7");
+	expect_out("no NDF std of gamma 1.7, no uncorrelated G, no Fresnel term dielectric; ggx (gamma 2) was fitted");
+	g = read_gltf();
+	expect_told("error of what a glTF viewer shows ", gltf_error(&g, &truth));
+	export_it(SMALL " --format gltf " LOBE " --ndf ggx --sigma 2.5 --gaf correlated --fresnel schlick");
+	g = read_gltf();
+	expect_out("no roughness of 2.5");
+	assert_true(g.roughness == 1);
+}
+
+/* MERL */
+
+static void merl_is_the_model(void **state)
+{
+	const struct cook_torrance model = given("ggx", 0.2, 2, 1.5);
+	struct samples want = make_table(&model, 180, BINS_CENTRE, 0), got;
+	struct error error = {""};
+	size_t n = 0;
+
+	(void)state;
+	stdfit("export --format merl --threads 1 -o made.binary --bins centre " LOBE " --ndf ggx --sigma 0.2");
+	expect_code(0);
+	assert_string_equal(last.out, "");
+	assert_memory_equal(last.err, "exact: ", 7);
+	assert_int_equal(merl_read("made.binary", 1, &got, &error), STATUS_OK);
+	for (int c = 0; c < 3; c++)
+		for (size_t i = 0; i < samples_count(&want); i++)
+			if (!isnan(want.value[c][i])) {
+				check_rel((double)got.value[c][i], (double)want.value[c][i], 1.3e-7, "entry");
+				n++;
+			}
+	assert_true(n > 3000000);
+	samples_free(&want);
+	samples_free(&got);
+	stdfit("export --format merl -o made.binary -q --kd 1");
+	expect_code(0);
+	assert_string_equal(last.err, "");
+	assert_int_equal(remove("made.binary"), 0);
+}
+
+/* JSON */
+
+static void json_is_the_model(void **state)
+{
+	static const char *const lines[] = {
+		LOBE " --sigma 0.2 --gamma 1.7",
+		LOBE " --sigma 0.123456789012345678 --ndf beckmann --gaf v-groove --fresnel none",
+		LOBE " --sigma 0.2 --ndf ggx --gaf correlated --fresnel schlick --ior 2.2",
+		LOBE " --sigma 0.2 --gamma inf --fresnel conductor --ior 1.7 --k 3.3",
+		LOBE " --sigma 0.2 --gamma 1.2 --ndf gtr",
+		LOBE " --sigma 0.2 --gamma 0.7 --ndf low --bins centre --max-theta 70",
+		LOBE " --sigma 0.2 --gamma 2.3 --ndf hyper-cauchy",
+		LOBE " --sigma 0.2 --gamma 2.3 --ndf t-family --lambda rational",
+		"--kd 0.25",
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+		char *command;
+
+		assert_true(asprintf(&command, "--format json -o model.json %s", lines[i]) > 0);
+		export_it(command);
+		free(command);
+		export_it("--format json --from model.json");
+		char *first = slurp("model.json");
+		assert_string_equal(last.out, first);
+		free(first);
+	}
+}
+
+static void json_of_a_table_of_nodes(void **state)
+{
+	const struct fit_options fit = fit_options_default();
+	struct fit_options read_fit = fit;
+	double theta[40], D[40];
+	struct pwl pwl;
+	struct cook_torrance model = make_model("ggx", 0.2, 2, 1.5);
+	struct model_json read;
+	struct export export;
+	struct error error = {""};
+
+	(void)state;
+	for (int i = 0; i < 40; i++) {
+		theta[i] = i < 39 ? 0.04 * i : M_PI_2;
+		D[i] = exp(-4 * theta[i]) * (1.1 + sin(9 * theta[i]));
+	}
+	assert_int_equal(pwl_init(&pwl, 40, theta, D, NULL), STATUS_OK);
+	ndf_from_pwl(&model.ndf, &pwl);
+	const struct export_source source = {&model,       &fit, 0.123456789012345, "name \"quoted\" \\ \xc3\xa9",
+					     "a/b.binary", NULL};
+	FILE *file = fopen("pl.json", "w");
+	assert_non_null(file);
+	assert_int_equal(export_prepare(&export, EXPORT_JSON, &source, &error), STATUS_OK);
+	assert_int_equal(export_write(&export, file, &error), STATUS_OK);
+	assert_int_equal(fclose(file), 0);
+	if (model_json_read("pl.json", &read, &read_fit, &error))
+		fail_msg("%s", error.text);
+	expect_same(&read.model, &model, 1e-14);
+	assert_string_equal(read.material, source.material);
+	assert_string_equal(read.path, source.path);
+	assert_true(read.error == source.error);
+	model_json_free(&read);
+	pwl_free(&pwl);
+}
+
+static void bad_json_is_told(void **state)
+{
+	static const struct {
+		const char *text, *part;
+	} bad[] = {
+		{"", "expected a value"},     {"{", "expected a string"},
+		{"[1, 2", "',' or ']'"},      {"[1 2]", "',' or ']'"},
+		{"[01]", "expected a value"}, {"[1.]", "expected a number"},
+		{"[1e999]", "in range"},      {"{\"a\": 1,}", "expected a string"},
+		{"{\"a\" 1}", "':'"},         {"\"\\u0000\"", "escape"},
+		{"\"\\ud800\"", "escape"},    {"\"open", "end of a string"},
+		{"nul", "expected a value"},  {"1 2", "the end"},
+		{"\n\n  x", "line 3"},
+	};
+	struct json json;
+	struct error error;
+
+	(void)state;
+	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+		assert_int_equal(json_parse(bad[i].text, &json, &error), STATUS_FORMAT);
+		if (!strstr(error.text, bad[i].part))
+			fail_msg("%s: %s", bad[i].text, error.text);
+	}
+	char deep[300];
+	memset(deep, '[', 200);
+	deep[200] = '\0';
+	assert_int_equal(json_parse(deep, &json, &error), STATUS_FORMAT);
+	assert_int_equal(json_parse("[\"\\u00e9\\ud83d\\ude00\\n\", true, null, -1.5e3]", &json, &error), STATUS_OK);
+	assert_string_equal(json.item[0].text, "\xc3\xa9\xf0\x9f\x98\x80\n");
+	assert_true(json.n == 4 && json.item[3].number == -1500);
+	json_free(&json);
+
+	export_it("--format json -o good.json " LOBE " --sigma 0.2 --gamma 1.7");
+	static const char *const edits[][2] = {
+		{"s/stdfit-model-1/x/", "\\\"format\\\""},
+		{"s/\"std\"/\"none\"/", "\"ndf\""},
+		{"s/\"gamma\": 1.7/\"gamma\": 1/", "parameters"},
+		{"s/0.31/-1/", "\"kd\""},
+		{"s/uncorrelated/x/", "\"gaf\""},
+		{"s/\"k\": 0/\"k\": null/", "\"k\""},
+		{"s/\"max_theta\": 90/\"max_theta\": 91/", "\"fitted\""},
+	};
+	for (size_t i = 0; i < sizeof edits / sizeof *edits; i++) {
+		char *command;
+
+		assert_true(
+			asprintf(&command,
+				 "sed '%s' good.json >bad.json; exec \"$STDFIT\" export --format brdf --from bad.json",
+				 edits[i][0]) > 0);
+		shell(command);
+		free(command);
+		expect_error(1, i ? edits[i][1] : "\"format\"");
+	}
+}
+
+/* From a file and from a table */
+
+static void from_a_fit_and_from_its_row(void **state)
+{
+	(void)state;
+	stdfit("synth m.binary --kd 0.2,0.1,0.05 --ks 0.5 --sigma 0.2 --gamma 1.8 --noise 0.1 --threads 1");
+	expect_code(0);
+	stdfit("fit m.binary --ndf std,ggx --max-theta 25 --threads 1 -o fits.csv -q");
+	expect_code(0);
+	export_it("m.binary --format json --ndf std --max-theta 25 --threads 1 -o fit.json");
+	export_it("m.binary --from fits.csv --ndf std --format json -o row.json");
+	char *fit = slurp("fit.json"), *row = slurp("row.json");
+	assert_string_equal(fit, row);
+	free(fit);
+	free(row);
+	export_it("--from fits.csv --row 2 --format json");
+	assert_string_equal(strstr(last.out, "\"ndf\": \"std\"") ? "std" : "other", "std");
+	/* The stand-in is fitted to the file that the row is of, and gets the errors of the table. */
+	struct csv_table table = read_table("fits.csv");
+	export_it("--from fits.csv --row 2 --format mitsuba");
+	expect_out("against m.binary");
+	expect_told("error of the model ", result_number(table.row[1], RESULT_ERROR));
+	expect_told("of what stands here ", result_number(table.row[0], RESULT_ERROR));
+	assert_string_equal(table.row[0][RESULT_NDF], "ggx");
+	csv_table_free(&table);
+	/* Not to one that has changed since. */
+	stdfit("synth m.binary --kd 0.9");
+	expect_code(0);
+	export_it("--from fits.csv --row 2 --format mitsuba");
+	expect_out("against a table of the model itself");
+}
+
+static void refusals_are_one_line(void **state)
+{
+	static const struct {
+		const char *arguments;
+		int code;
+		const char *part;
+	} bad[] = {
+		{"--kd 1", 2, "expected --format"},
+		{"--kd 1 --format xyz", 2, "expected one of brdf, merl, mitsuba, pbrt, gltf, json"},
+		{"--format json", 2, "expected FILE to fit"},
+		{"a b --format json", 2, "expected one FILE"},
+		{"--kd 1 --format merl", 2, "needs -o FILE"},
+		{"--kd 1 --gray --format json", 2, "--gray means nothing"},
+		{"--kd 1 --row 1 --format json", 2, "--row means nothing"},
+		{"x.binary --ndf std,ggx --format json", 2, "--ndf takes one name"},
+		{"--from fits.csv --kd 1 --format json", 2, "--kd and --from exclude"},
+		{"--from model.json --row 1 --format json", 2, "neither --row nor --ndf"},
+		{"none.binary --format json", 1, "none.binary"},
+		{"--from none.csv --format json", 1, "none.csv"},
+		{"--from none.json --format json", 1, "none.json"},
+		{"--from fits.csv --row 9 --format json", 1, "no such row"},
+		{"--from fits.csv --format json", 1, "2 rows are meant"},
+		{"--kd 1 --format json -o none/x.json", 1, "none/x.json"},
+		{"--kd 1 --format json -o /dev/full", 1, "/dev/full"},
+		{"--kd 1 --format merl -o /dev/full", 1, "/dev/full"},
+		{"--ks 1 --sigma 0.2 --gamma 1.7 --format pbrt --kd 0.1,0.2,0.3 --ks 0.1,0.2,0.3 -o left.pbrt", 1,
+		 "colour"},
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+		char *command;
+
+		assert_true(asprintf(&command, "export %s", bad[i].arguments) > 0);
+		stdfit(command);
+		free(command);
+		expect_error(bad[i].code, bad[i].part);
+		assert_string_equal(last.out, "");
+	}
+	assert_int_equal(access("left.pbrt", F_OK), -1);
+	shell("exec \"$STDFIT\" export --kd 1 --format json >/dev/full");
+	expect_error(1, "cannot write standard output");
+	/* An older file stays where the new one cannot be written. */
+	write_text("old.json", "old");
+	shell("ulimit -f 0; exec \"$STDFIT\" export --kd 1 --format json -o old.json 2>/dev/full");
+	expect_code(1);
+	char *old = slurp("old.json");
+	assert_string_equal(old, "old");
+	free(old);
+	shell("ls -A | grep tmp");
+	assert_string_equal(last.out, "");
+}
+
+static int set_up(void **state)
+{
+	(void)state;
+	return enter_directory() ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	return leave_directory();
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(mitsuba_says_what_it_can),    cmocka_unit_test(mitsuba_gets_a_stand_in),
+		cmocka_unit_test(mitsuba_blends_within_one),   cmocka_unit_test(xmllint_takes_it),
+		cmocka_unit_test(pbrt_says_what_it_can),       cmocka_unit_test(gltf_tells_its_error),
+		cmocka_unit_test(merl_is_the_model),           cmocka_unit_test(json_is_the_model),
+		cmocka_unit_test(json_of_a_table_of_nodes),    cmocka_unit_test(bad_json_is_told),
+		cmocka_unit_test(from_a_fit_and_from_its_row), cmocka_unit_test(refusals_are_one_line),
+	};
+
+	return cmocka_run_group_tests(tests, set_up, tear_down);
+}
