@@ -162,9 +162,9 @@ static enum status fit_blend(const struct fit_context *context, const struct sam
 	return STATUS_OK;
 }
 
-/* Fits the stand-in into export->model. */
+/* Fits the stand-in into export->model. *raised: within a blend. */
 static enum status fit_stand_in(struct export *export, const struct target *target, const struct samples *samples,
-				struct error *error)
+				bool *raised, struct error *error)
 {
 	struct fit_options fit = options_for(target, &export->source);
 	struct fit_context *context = NULL;
@@ -176,7 +176,8 @@ static enum status fit_stand_in(struct export *export, const struct target *targ
 		fit.sigma = target->sigma_max;
 		status = fit_once(context, samples, &fit, target->gray, &export->model, error);
 	}
-	if (!status && target->blend && !fits_blend(&export->model))
+	*raised = !status && target->blend && !fits_blend(&export->model);
+	if (*raised)
 		status = fit_blend(context, samples, &fit, target, &export->model, error);
 	fit_context_free(context);
 	return status;
@@ -256,14 +257,17 @@ enum status stand_in_prepare(struct export *export, const struct target *target,
 	if (!export->stand_in)
 		return check_sigma(export, target, error);
 	const struct samples *samples = stand_in_samples(&export->source, &own);
-	enum status status = samples ? fit_stand_in(export, target, samples, error)
+	bool raised = false;
+	enum status status = samples ? fit_stand_in(export, target, samples, &raised, error)
 				     : error_set(error, STATUS_NO_MEMORY, "out of memory");
 	if (!status)
 		status = tell_cost(export, samples, error);
 	samples_free(&own);
 	if (!status)
 		status = check_sigma(export, target, error);
-	snprintf(export->why, sizeof export->why, "approximate: %s has%s; %s%s was fitted in its place", target->name,
-		 lacks, ndf_name(export->model.ndf.class), is_beckmann(&export->model.ndf) ? "" : " (gamma 2)");
+	snprintf(export->why, sizeof export->why, "approximate: %s has%.200s; %s%s was fitted in its place%s",
+		 target->name, lacks, ndf_name(export->model.ndf.class),
+		 is_beckmann(&export->model.ndf) ? "" : " (gamma 2)",
+		 raised ? ", with an index that keeps kd + ks below 1" : "");
 	return status;
 }

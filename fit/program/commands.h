@@ -22,6 +22,8 @@ enum command {
 	COMMAND_INFO,
 	COMMAND_SYNTH,
 	COMMAND_EXPORT,
+	COMMAND_NDF,
+	COMMAND_SAMPLE,
 	COMMAND_COUNT
 };
 
@@ -33,6 +35,8 @@ int cmd_bench(int argc, char **argv, atomic_bool *cancel);
 int cmd_eval(int argc, char **argv, atomic_bool *cancel);
 int cmd_info(int argc, char **argv, atomic_bool *cancel);
 int cmd_export(int argc, char **argv, atomic_bool *cancel);
+int cmd_ndf(int argc, char **argv, atomic_bool *cancel);
+int cmd_sample(int argc, char **argv, atomic_bool *cancel);
 int cmd_synth(int argc, char **argv, atomic_bool *cancel);
 
 #endif

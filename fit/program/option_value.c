@@ -17,6 +17,8 @@
 #define INFO (1u << COMMAND_INFO)
 #define SYNTH (1u << COMMAND_SYNTH)
 #define EXPORT (1u << COMMAND_EXPORT)
+#define NDF (1u << COMMAND_NDF)
+#define SAMPLE (1u << COMMAND_SAMPLE)
 #define FITS (FIT | COMPARE)
 #define SEARCHES (FITS | BENCH)
 #define MODEL (EVAL | SYNTH)
@@ -31,8 +33,8 @@ const struct option_spec option_specs[] = {
 	 "write the table there; an older FILE becomes FILE~", AT(output), 0, 0},
 	{"output", 'o', KIND_TEXT, EXPORT, NOT_RECORDED, "FILE", "write it there, not to standard output", AT(output), 0, 0},
 	{"format", 0, KIND_FORMAT, EXPORT, NOT_RECORDED, "NAME", "what to write", AT(format), 0, 0},
-	{"json", 0, KIND_ON, SEARCHES | MERGE | EVAL | INFO, NOT_RECORDED, NULL, "JSON instead of CSV", AT(json), 0, 0},
-	{"table", 0, KIND_ON, SEARCHES | MERGE | EVAL | INFO, NOT_RECORDED, NULL,
+	{"json", 0, KIND_ON, SEARCHES | MERGE | EVAL | INFO | NDF | SAMPLE, NOT_RECORDED, NULL, "JSON instead of CSV", AT(json), 0, 0},
+	{"table", 0, KIND_ON, SEARCHES | MERGE | EVAL | INFO | NDF | SAMPLE, NOT_RECORDED, NULL,
 	 "a readable table on standard output even if that is no terminal", AT(readable), 0, 0},
 	{"resume", 0, KIND_ON, FIT, NOT_RECORDED, NULL,
 	 "keep the rows of -o FILE that were made from the same bytes with the same options", AT(resume), 0, 0},
@@ -47,8 +49,8 @@ const struct option_spec option_specs[] = {
 	 1024},
 	{"ndf", 0, KIND_NDFS, FITS, RECORDED_WITHIN, "LIST", "NDFs to fit, separated by commas", AT(fit.ndf), 0, 0},
 	{"ndf", 0, KIND_NDFS, MODEL | BENCH | SOURCES, NOT_RECORDED, "NAME", "NDF of the model", AT(fit.ndf), 0, 0},
-	{"gaf", 0, KIND_GAF, SEARCHES | MODEL | SOURCES, RECORDED, "NAME", "masking and shadowing G", AT(fit.gaf), 0, 0},
-	{"lambda", 0, KIND_LAMBDA, SEARCHES | MODEL | SOURCES, RECORDED, "FORM",
+	{"gaf", 0, KIND_GAF, SEARCHES | MODEL | SOURCES | NDF | SAMPLE, RECORDED, "NAME", "masking and shadowing G", AT(fit.gaf), 0, 0},
+	{"lambda", 0, KIND_LAMBDA, SEARCHES | MODEL | SOURCES | NDF | SAMPLE, RECORDED, "FORM",
 	 "form of Lambda of STD and its family; other NDFs have the exact one only", AT(fit.lambda), 0, 0},
 	{"fresnel", 0, KIND_FRESNEL, SEARCHES | MODEL | SOURCES, RECORDED, "NAME", "Fresnel term F", AT(fit.fresnel), 0, 0},
 	{"weight", 0, KIND_WEIGHT, SEARCHES | SOURCES, RECORDED, "NAME", "how an entry counts in the error", AT(fit.weight), 0,
@@ -104,13 +106,30 @@ const struct option_spec option_specs[] = {
 	{"k", 0, KIND_NUMBER, MODEL | SOURCES, NOT_RECORDED, "K", "imaginary part of a conductor's index", AT(k), 0, FIT_K_MAX},
 	{"kd", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "diffuse factors", AT(kd), 0, 1e6},
 	{"ks", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "specular factors", AT(ks), 0, 1e6},
-	{"from", 0, KIND_TEXT, EVAL | SOURCES, NOT_RECORDED, "FILE.csv",
+	{"from", 0, KIND_TEXT, EVAL | SOURCES | NDF | SAMPLE, NOT_RECORDED, "FILE.csv",
 	 "take the model from the row of this material (and --ndf, if given); FILE.json: from a model's JSON", AT(from), 0, 0},
-	{"row", 0, KIND_INT, EVAL | SOURCES, NOT_RECORDED, "N", "take row N of --from, counted from 1", AT(row), 1, INT_MAX},
+	{"row", 0, KIND_INT, EVAL | SOURCES | NDF | SAMPLE, NOT_RECORDED, "N", "take row N of --from, counted from 1", AT(row), 1, INT_MAX},
 	{"phi", 0, KIND_PHI, SYNTH, NOT_RECORDED, "180|360", "entries along phi_d", AT(n_phi_d), 0, 0},
 	{"noise", 0, KIND_NUMBER, SYNTH, NOT_RECORDED, "REL", "standard deviation of a factor 1 + noise on each value",
 	 AT(noise), 0, 10},
 	{"seed", 0, KIND_SEED, SYNTH, NOT_RECORDED, "N", "seed of the noise", AT(fit.seed), 0, 0},
+	{"sigma", 0, KIND_WORD, NDF | SAMPLE, NOT_RECORDED, "SX[,SY]", "roughness, along x and y if the NDF has two",
+	 AT(sigma_words), 0, 0},
+	{"gamma", 0, KIND_WORD, NDF | SAMPLE, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann)",
+	 AT(gamma_words), 0, 0},
+	{"params", 0, KIND_WORD, NDF | SAMPLE, NOT_RECORDED, "P",
+	 "other parameters, name=value;...: x of t-family, B and C of low, D0 to D90 of pl, alpha_x, alpha_y, theta_x, "
+	 "theta_y, theta_z (degrees) of the ellipsoid",
+	 AT(params), 0, 0},
+	{"theta", 0, KIND_WORD, NDF, NOT_RECORDED, "LIST", "polar angles, degrees: START:END:STEP or A,B,...", AT(theta), 0,
+	 0},
+	{"phi", 0, KIND_WORD, NDF, NOT_RECORDED, "LIST", "azimuths, degrees, likewise; 0 if not given", AT(phi), 0, 0},
+	{"theta-i", 0, KIND_NUMBER, NDF | SAMPLE, NOT_RECORDED, "DEG", "direction from which normals are seen, at azimuth 0",
+	 AT(theta_i), 0, 89.999999},
+	{"sampling", 0, KIND_SAMPLING, SAMPLE, NOT_RECORDED, "NAME",
+	 "which normals; with --theta-i the visible ones where the NDF can, else all", AT(sampling), 0, 0},
+	{"count", 0, KIND_INT, SAMPLE, NOT_RECORDED, "N", "how many", AT(count), 1, 1000000},
+	{"seed", 0, KIND_SEED, SAMPLE, NOT_RECORDED, "N", "seed of the random numbers", AT(fit.seed), 0, 0},
 	{NULL, 0, KIND_ON, 0, NOT_RECORDED, NULL, NULL, 0, 0, 0},
 };
 
@@ -134,6 +153,8 @@ const char *option_choice(enum option_kind kind, int i)
 		return i < BINS_COUNT ? bins_name((enum bins)i) : NULL;
 	case KIND_PHI:
 		return i < 2 ? (i ? "360" : "180") : NULL;
+	case KIND_SAMPLING:
+		return i < SAMPLING_COUNT ? sampling_name((enum sampling)i) : NULL;
 	case KIND_FORMAT:
 		return i < EXPORT_FORMATS ? export_format_name((enum export_format)i) : NULL;
 	case KIND_ALGORITHM:
@@ -155,6 +176,8 @@ static enum status choice_find(enum option_kind kind, const char *text, void *va
 		return fresnel_find(text, value);
 	case KIND_WEIGHT:
 		return weight_find(text, value);
+	case KIND_SAMPLING:
+		return sampling_find(text, value);
 	case KIND_FORMAT:
 		return export_format_find(text, value);
 	case KIND_ALGORITHM:
@@ -328,6 +351,7 @@ enum status option_parse(struct options *options, const struct option_spec *spec
 		*(bool *)value = spec->kind == KIND_ON;
 		return STATUS_OK;
 	case KIND_TEXT:
+	case KIND_WORD:
 		*(const char **)value = text;
 		return *text ? STATUS_OK : error_set(error, STATUS_DOMAIN, "expected a name");
 	case KIND_INT:
@@ -378,6 +402,7 @@ void option_write(FILE *file, const struct options *options, const struct option
 		fputs(*(const bool *)value == (spec->kind == KIND_ON) ? "yes" : "no", file);
 		break;
 	case KIND_TEXT:
+	case KIND_WORD:
 		fputs(*(const char *const *)value ? *(const char *const *)value : "", file);
 		break;
 	case KIND_INT:
@@ -414,6 +439,9 @@ void option_write(FILE *file, const struct options *options, const struct option
 	case KIND_BINS:
 		fputs(bins_name(*(const enum bins *)value), file);
 		break;
+	case KIND_SAMPLING:
+		fputs(sampling_name(*(const enum sampling *)value), file);
+		break;
 	case KIND_FORMAT:
 		fputs(export_format_name(*(const enum export_format *)value), file);
 		break;
@@ -433,7 +461,7 @@ bool option_applies(const struct option_spec *spec, enum command command)
 
 static bool has_default(const struct options *defaults, const struct option_spec *spec)
 {
-	if (!spec->argument || spec->kind == KIND_TEXT || spec->kind == KIND_PERCENT || spec->kind == KIND_ALGORITHMS ||
+	if (!spec->argument || spec->kind == KIND_TEXT || spec->kind == KIND_WORD || spec->kind == KIND_SAMPLING || spec->kind == KIND_PERCENT || spec->kind == KIND_ALGORITHMS ||
 	    spec->kind == KIND_SHARD || spec->kind == KIND_FORMAT)
 		return false;
 	const void *value = (const char *)defaults + spec->offset;

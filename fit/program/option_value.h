@@ -11,6 +11,7 @@ enum option_kind {
 	KIND_ON,
 	KIND_OFF,     /* bool, set to true or false */
 	KIND_TEXT,    /* const char * */
+	KIND_WORD,    /* the same, of no file */
 	KIND_INT,     /* int in [min, max] */
 	KIND_SEED,    /* uint64_t */
 	KIND_NUMBER,  /* double in [min, max] */
@@ -26,6 +27,7 @@ enum option_kind {
 	KIND_WEIGHT,
 	KIND_BINS,
 	KIND_FORMAT,
+	KIND_SAMPLING,
 	KIND_ALGORITHM,
 	KIND_ALGORITHMS,
 };

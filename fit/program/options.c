@@ -52,6 +52,16 @@ static const struct command_text commands[COMMAND_COUNT] = {
 			    "whether the export is exact or approximate, and why. Where the target has no such model, one\n"
 			    "that it has is fitted in its place, to FILE or the file of the row if that can be read, else\n"
 			    "to the model's own table; the export says what that costs in error.\n"},
+	[COMMAND_NDF] = {"ndf", "[NAME]", "D, P22, P2, Lambda, G1 and pdf of a distribution as a table",
+			 "Tabulates a normal distribution function: D and pdf of the normal at theta and phi, P22 of its\n"
+			 "slope, P2 of the slope tan(theta) along phi, Lambda and G1 of the direction there; with --theta-i\n"
+			 "the density of the normal among those visible, and the weight of such a sample. NAME is an NDF,\n"
+			 "ellipsoid, or - for rows of standard input: a CSV with the columns ndf, sigma, sigma_y, gamma,\n"
+			 "params, lambda, theta, phi, theta_i, as far as needed. With --from, the NDFs of a result table.\n"},
+	[COMMAND_SAMPLE] = {"sample", "[NAME]", "random normals of a distribution, and where they reflect to",
+			    "Draws normals m, visible or all, with their density. With --theta-i also the direction wo into\n"
+			    "which each reflects, its density, and its weight: the mean of the weights is the directional\n"
+			    "albedo of the lobe without its Fresnel term.\n"},
 	[COMMAND_SYNTH] = {"synth", "OUT.binary", "write a MERL file of a model",
 			   "Writes the table that an ideal measurement of the model would give; -1 below the\n"
 			   "horizon.\n"},
@@ -167,6 +177,8 @@ struct options options_default(enum command command)
 		.command = command,
 		.within = NAN,
 		.n_phi_d = 180,
+		.theta_i = NAN,
+		.count = 1000,
 		.ks = {0, 0, 0},
 		.kd = {0, 0, 0},
 	};

@@ -5,6 +5,7 @@
 
 #include "algorithms.h"
 #include "commands.h"
+#include "distribution.h"
 #include "export.h"
 #include "files.h"
 #include "report.h"
@@ -24,6 +25,12 @@ struct options {
 	const char *from; /* a result table to take the model from */
 	int row;          /* its row, from 1; 0: the one of this material and NDF */
 	enum export_format format;
+	/* A distribution, for ndf and sample, in words: distribution.h. */
+	const char *sigma_words, *gamma_words, *params;
+	const char *theta, *phi; /* lists of angles: angles.h */
+	double theta_i;          /* degrees; NaN: not given */
+	enum sampling sampling;
+	int count;
 	int n_phi_d;
 	double noise;
 	/* What bench runs; none: all. */

@@ -263,8 +263,7 @@ static bool is_factor(char *const *row, enum result_column column)
 	return x >= 0 && !isinf(x);
 }
 
-/* The value of a parameter in the column params; false when it is not there or no number. */
-static bool find_param(const char *params, const char *name, double *value)
+bool result_param(const char *params, const char *name, double *value)
 {
 	const size_t length = strlen(name);
 	for (const char *at = params; at; at = strchr(at, ';')) {
@@ -285,7 +284,7 @@ static enum status result_nodes(char *const *row, enum bins bins, struct ndf *nd
 	for (int i = 0; i < FREE_FORM_VALUES; i++) {
 		char name[16];
 		snprintf(name, sizeof name, "D%d", i);
-		if (!find_param(row[RESULT_PARAMS], name, &D[i]))
+		if (!result_param(row[RESULT_PARAMS], name, &D[i]))
 			return STATUS_DOMAIN;
 	}
 	struct pwl *made = calloc(1, sizeof *made);
@@ -324,7 +323,7 @@ static enum status result_ndf(char *const *row, const struct ndf_class *class, s
 		} else {
 			*wrong = RESULT_PARAMS;
 			/* Without a specular term there are none. */
-			if (!find_param(row[RESULT_PARAMS], name, &value[i])) {
+			if (!result_param(row[RESULT_PARAMS], name, &value[i])) {
 				if (*row[RESULT_KS_R])
 					return STATUS_DOMAIN;
 				value[i] = 1;
@@ -373,7 +372,7 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 	if (!(model->n > 0 && !isinf(model->n)))
 		return bad_cell(row, RESULT_IOR, error);
 	if (options->fresnel == FRESNEL_CONDUCTOR && *row[RESULT_KS_R] &&
-	    !(find_param(row[RESULT_PARAMS], "k", &model->k) && model->k >= 0))
+	    !(result_param(row[RESULT_PARAMS], "k", &model->k) && model->k >= 0))
 		return bad_cell(row, RESULT_PARAMS, error);
 	model->gaf = options->gaf;
 	model->fresnel = options->fresnel;

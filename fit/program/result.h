@@ -81,6 +81,10 @@ MUST_CHECK enum status result_model(char *const *row, struct cook_torrance *mode
 /* result_model_free - frees the table, if any, that result_model() made for the model's NDF: *pwl, NULL unless it is pl. */
 void result_model_free(struct cook_torrance *model, struct pwl *pwl);
 
+/* result_param - the value of a parameter in the text of the column params, name=value;... Returns false, *value
+ * untouched, when it is not there or no number. */
+bool result_param(const char *params, const char *name, double *value);
+
 /* result_order - qsort order of rows (char ***): material, ndf, path. */
 int result_order(const void *a, const void *b);
 
