@@ -552,7 +552,7 @@ static inline struct glsl_value glsl_eval(struct glsl *g, const struct glsl_node
 	case GLSL_UNARY:
 		a = glsl_eval(g, node->item[0]);
 		if (node->name[0] == '!')
-			return glsl_bool(!a.v[0]);
+			return glsl_bool(a.v[0] == 0);
 		for (int c = 0; c < 3; c++)
 			a.v[c] = -a.v[c];
 		return a;
