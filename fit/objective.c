@@ -119,38 +119,27 @@ static void pass_block(struct objective *o, const struct look *look, int block)
 					&o->sums[block][p]);
 }
 
-static void pass_blocks(struct objective *o, const struct look *look, bool lobe, int from, int to)
-{
-	for (int block = from; block < to; block++) {
-		if (lobe)
-			lobe_block(o, block);
-		pass_block(o, look, block);
-	}
-}
-
 /* One pass over the table; with `lobe`, s is computed on the way, while each block is in cache. The blocks' sums are
  * added in their order: the result is the same to the bit for any number of threads. Tasks, not a parallel loop: on a
  * busy machine this thread then does what the others do not come to, and never waits for one that has not begun. */
 static void pass(struct objective *o, const struct look *look, bool lobe, struct kernel_sums total[])
 {
 	enum { CHUNK = 8 };
-	const int n_blocks = o->table->n_blocks;
+	const size_t n_blocks = (size_t)o->table->n_blocks;
 
 	o->passes++;
-	if (o->threads > 1) {
-#pragma omp taskgroup
-		for (int from = 0; from < n_blocks; from += CHUNK) {
-			const int to = from + CHUNK < n_blocks ? from + CHUNK : n_blocks;
-
-#pragma omp task firstprivate(from, to) default(shared)
-			pass_blocks(o, look, lobe, from, to);
-		}
-	} else {
-		pass_blocks(o, look, lobe, 0, n_blocks);
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion" /* clang finds some in what it makes of the loop */
+#pragma omp taskloop grainsize(CHUNK) default(shared) if (o->threads > 1)
+	for (size_t block = 0; block < n_blocks; block++) {
+		if (lobe)
+			lobe_block(o, (int)block);
+		pass_block(o, look, (int)block);
 	}
+#pragma GCC diagnostic pop
 	for (int p = 0; p < look->n_problems; p++) {
 		total[p] = (struct kernel_sums){0};
-		for (int block = 0; look->wanted[p] && block < n_blocks; block++) {
+		for (size_t block = 0; look->wanted[p] && block < n_blocks; block++) {
 			const struct kernel_sums *sums = &o->sums[block][p];
 
 			total[p].error += sums->error;
