@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Targets: all (default), check, demo, bench, figures, asan, ubsan, clean. All but `all` and `clean` install what is
-# missing first.
+# Targets: all (default), check, demo, bench, figures, asan, ubsan, tsan, lint, valgrind, compilers, clean. All but `all`
+# and `clean` install what is missing first.
 VERSION := 0.1.0
 
 CC ?= cc
@@ -27,12 +27,16 @@ folders := src data_readers fit fit/export fit/program
 lib_sources := $(filter-out fit/program/main.c,$(foreach folder,$(folders),$(wildcard $(folder)/*.c)))
 lib_objects := $(lib_sources:%.c=$(BUILD)/%.o)
 
-# The kernel's loops want vectors; on x86-64 it is compiled a second time for AVX2 and chosen at run time.
+# The kernel's loops want vectors; on x86-64 it is compiled a second time for AVX2 and chosen at run time
+# (AVX2=no: not so).
 CFLAGS_kernel := -O3 -Wno-psabi -ffp-contract=fast
 CFLAGS_kernel_avx2 := $(CFLAGS_kernel) -mavx2 -mfma -DKERNEL_NAME=kernel_avx2
 CFLAGS_metrics := -O3
 CFLAGS_bench := -O3
 ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
+AVX2 ?= yes
+endif
+ifeq ($(AVX2),yes)
 lib_objects += $(BUILD)/fit/kernel_avx2.o
 CFLAGS_kernel_pick := -DKERNEL_HAVE_AVX2
 endif
@@ -88,6 +92,22 @@ sanitize_tsan := -fsanitize=thread
 environment_tsan = OMP_TOOL_LIBRARIES="$$(clang -print-resource-dir)/../../libarcher.so" \
 	TSAN_OPTIONS="ignore_noninstrumented_modules=1 $$TSAN_OPTIONS"
 
+# clang-tidy, cppcheck and shellcheck over the whole tree; what they leave out stands in .clang-tidy and .cppcheck.
+lint:
+	@scripts/setup.sh $@
+	@scripts/lint.sh $(filter -D% -I%,$(ALL_CFLAGS))
+
+# The program under valgrind: no leak, no wrong access.
+valgrind:
+	@scripts/setup.sh $@
+	@$(MAKE) --no-print-directory all
+	@scripts/valgrind.sh $(BUILD)/stdfit
+
+# gcc and clang, without and with optimisation and AVX2, fit the tables of MERL=DIR or synthetic ones, and are compared.
+compilers:
+	@scripts/setup.sh $@
+	@MERL='$(MERL)' scripts/compilers.sh $(BUILD)
+
 bench: setup
 	@$(MAKE) --no-print-directory $(BUILD)/tests/bench
 	$(BUILD)/tests/bench $(BUILD)/bench.csv
@@ -105,6 +125,6 @@ clean:
 	rm -rf $(BUILD)
 
 
-.PHONY: all setup check run-tests asan ubsan bench figures demo clean
+.PHONY: all setup check run-tests asan ubsan tsan lint valgrind compilers bench figures demo clean
 
 -include $(lib_objects:.o=.d) $(BUILD)/fit/program/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))

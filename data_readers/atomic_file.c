@@ -37,7 +37,7 @@ static char *beside(const char *path, const char *name)
 
 	if (joined) {
 		memcpy(joined, path, length);
-		strcpy(joined + length, name);
+		memcpy(joined + length, name, strlen(name) + 1);
 	}
 	return joined;
 }

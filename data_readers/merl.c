@@ -182,7 +182,7 @@ static struct masked mask(const struct samples *samples, size_t first, size_t co
 	for (size_t e = 0; e < count; e++) {
 		const uint32_t nonfinite = is_nonfinite(r[e]) | is_nonfinite(g[e]) | is_nonfinite(b[e]);
 		const uint32_t negative = sign_of(r[e]) | sign_of(g[e]) | sign_of(b[e]);
-		const float hidden = nonfinite | negative ? NAN : 0.0f;
+		const float hidden = (nonfinite | negative) ? NAN : 0.0f;
 		n_nonfinite += nonfinite;
 		n_negative += negative & ~nonfinite;
 		r[e] = (r[e] < FLT_MIN ? 0.0f : r[e]) + hidden;
@@ -298,7 +298,7 @@ static enum status check_unchanged(int fd, const struct stat *before, struct err
 static enum status read_open(int fd, const struct stat *st, int threads, struct samples *samples, struct error *why)
 {
 	struct header header;
-	int n_phi_d;
+	int n_phi_d = 0;
 	enum status status = read_header(fd, (size_t)st->st_size, &n_phi_d, &header, why);
 
 	if (status != STATUS_OK)
@@ -318,7 +318,7 @@ static enum status read_open(int fd, const struct stat *st, int threads, struct 
 enum status merl_read(const char *path, int threads, struct samples *samples, struct error *error)
 {
 	struct error why = {{0}};
-	struct stat st;
+	struct stat st = {0};
 	int fd;
 
 	*samples = (struct samples){0};

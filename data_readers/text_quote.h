@@ -12,8 +12,8 @@ enum { TEXT_QUOTE_SIZE = 256 }; /* room for a name inside a struct error, with t
  * "...". For people to read, not to be read back: a backslash stands for itself. size >= 16. Never fails. */
 void text_quote(const char *s, char *out, size_t size);
 
-/* text_printable - length of the printable UTF-8 sequence at s; 0 if there is none (end, control character, line
+/* text_printable - length of the printable UTF-8 sequence at text; 0 if there is none (end, control character, line
  * separator, overlong form, surrogate, cut short). */
-size_t text_printable(const char *s);
+size_t text_printable(const char *text);
 
 #endif

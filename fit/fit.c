@@ -307,7 +307,7 @@ static enum status fit_each_gamma(const struct job *job, const struct ndf_class 
 	struct fit_options options = *job->options;
 	struct job own = *job;
 	enum status status = STATUS_OK;
-	struct fit_result one;
+	struct fit_result one = {0};
 	struct ndf ndf;
 	long evaluations = 0, passes = 0;
 	double seconds = 0;

@@ -324,7 +324,9 @@ static enum status run_all(struct run *r, const struct cook_torrance starts[], i
 		if (status == STATUS_OK)
 			accept(best, &s);
 	}
-	if (status == STATUS_OK && isfinite(best->linear.error))
+	if (status == STATUS_OK && !isfinite(best->linear.error))
+		status = STATUS_DOMAIN; /* no start was one */
+	if (status == STATUS_OK)
 		status = follow(r, best, LONG);
 	return status;
 }
@@ -337,7 +339,7 @@ enum status free_form_run(const struct levels *levels, const struct fit_options 
 	const size_t terms = (size_t)r.sample->n_blocks * KERNEL_BLOCK * 2 * SAMPLES_CHANNELS;
 	const struct ndf_class *class = ndf_find("pl");
 	enum status status = objective_init(&r.full, full, options, class, 1, MASKING_FINE);
-	struct state best;
+	struct state best = {0};
 
 	*found = (struct found){.starts = n_starts, .starts_agreeing = 1};
 	if (status == STATUS_OK)

@@ -644,7 +644,7 @@ enum status search_run(const struct levels *levels, const struct fit_options *op
 		       struct found *found)
 {
 	struct search s = new_search(levels, options, class);
-	struct place *place = calloc((size_t)(MOST_STARTS + options->starts + 1), sizeof *place);
+	struct place *place = calloc(MOST_STARTS + (size_t)options->starts + 1, sizeof *place);
 	enum status status = place ? STATUS_OK : STATUS_NO_MEMORY;
 	int count = 1;
 

@@ -1,20 +1,45 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs what building and testing need, with apt-get, if anything is missing. Says nothing if nothing is.
+# usage: setup.sh [lint | tsan | valgrind | compilers]
+# Installs what building and testing need, or what that target of make needs besides, with apt-get, if anything of it is
+# missing. Says nothing if nothing is.
 set -u
 
+target=${1:-}
 libraries='nlopt gsl libxxhash cmocka'
 packages='gcc make libc6-dev pkg-config libnlopt-dev libgsl-dev libxxhash-dev libcmocka-dev'
+# What the program or a test can do without.
+optional='libpng-dev gnuplot-nox'
+tools=
+case $target in
+'') ;;
+lint) tools='clang clang-tidy cppcheck shellcheck' packages="$packages clang clang-tidy libomp-dev cppcheck shellcheck" ;;
+tsan | compilers) tools='clang' packages="$packages clang libclang-rt-dev libomp-dev" ;;
+valgrind) tools='valgrind' packages="$packages valgrind" ;;
+*)
+	echo "setup: no such target: '$target'" >&2
+	exit 2
+	;;
+esac
 
 # Prints the names of what is not there.
 missing() {
-	for tool in "${CC:-cc}" make "${PKG_CONFIG:-pkg-config}"; do
+	for tool in "${CC:-cc}" make "${PKG_CONFIG:-pkg-config}" $tools; do
 		# CC may carry options, as in 'ccache gcc'.
 		command -v "${tool%% *}" >/dev/null 2>&1 || printf ' %s' "${tool%% *}"
 	done
 	for library in $libraries; do
 		"${PKG_CONFIG:-pkg-config}" --exists "$library" 2>/dev/null || printf ' %s' "$library"
 	done
+	case $target in
+	tsan) links -fsanitize=thread || printf ' ThreadSanitizer of clang' ;;
+	compilers) links || printf ' OpenMP of clang' ;;
+	esac
+}
+
+# Whether clang can link a program with OpenMP and these options.
+links() {
+	echo 'int main(void) { return 0; }' | clang -fopenmp "$@" -x c - -o /dev/null 2>/dev/null
 }
 
 give_up() {
@@ -35,11 +60,17 @@ else
 	sudo=sudo
 fi
 
+install() {
+	$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "$@" >&2
+}
+
 echo "setup: not found:$lacking; installing with apt-get" >&2
 $sudo env DEBIAN_FRONTEND=noninteractive apt-get update >&2 || give_up 'apt-get update failed'
-# shellcheck disable=SC2086 # a list of words
-$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $packages >&2 ||
-	give_up 'apt-get install failed'
+# shellcheck disable=SC2086 # lists of words
+install $packages || give_up 'apt-get install failed'
+for package in $optional; do
+	install "$package" || echo "setup: going on without $package" >&2
+done
 
 lacking=$(missing)
 [ -z "$lacking" ] || give_up "still not found after installing:$lacking"

@@ -186,7 +186,7 @@ static double batch_time(const struct samples *samples, const struct fit_options
 static void bench_fits(const struct samples *samples, const struct samples *large)
 {
 	struct fit_options o = fit_options_default();
-	long evaluations, passes;
+	long evaluations = 0, passes = 0;
 
 	o.threads = 1;
 	const double one = fit_time(samples, &o, &evaluations, &passes);

@@ -16,6 +16,9 @@
 
 #include <cmocka.h>
 
+/* What cmocka does not say: a failure leaves the test. */
+void _fail(const char *file, int line) __attribute__((noreturn));
+
 /* check_rel - fails unless |got - want| <= tol |want|. Two NaNs, or two equal infinities, are equal. */
 static inline void check_rel(double got, double want, double tol, const char *label)
 {
@@ -108,10 +111,10 @@ static inline bool golden_next(struct golden *golden)
 		char *comma = strchr(field, ',');
 		if (comma)
 			*comma = '\0';
-		char *end;
+		char *rest;
 		golden->text[i] = field;
-		golden->value[i] = strtod(field, &end);
-		if (end == field || *end)
+		golden->value[i] = strtod(field, &rest);
+		if (rest == field || *rest)
 			golden->value[i] = NAN;
 		field = comma ? comma + 1 : NULL;
 	}

@@ -12,6 +12,15 @@
 #include <time.h>
 #include <unistd.h>
 
+/* ThreadSanitizer keeps files of its own, which a limit on the size of files hits as well. */
+#if defined __SANITIZE_THREAD__
+#define THREAD_SANITIZER true
+#elif defined __has_feature
+#define THREAD_SANITIZER __has_feature(thread_sanitizer)
+#else
+#define THREAD_SANITIZER false
+#endif
+
 static char test_directory[] = "/tmp/stdfit-test-XXXXXX";
 
 /* What the last run left. */
@@ -25,9 +34,10 @@ static inline char *slurp(const char *path)
 	char *text = NULL;
 	size_t size = 0;
 	FILE *file = fopen(path, "rb"), *memory = open_memstream(&text, &size);
-	assert_non_null(memory);
 	if (!file)
 		fail_msg("%s: %s", path, strerror(errno));
+	assert_non_null(file);
+	assert_non_null(memory);
 	for (int c; (c = fgetc(file)) != EOF;)
 		fputc(c, memory);
 	fclose(file);

@@ -528,6 +528,8 @@ static void outputs_that_cannot_be_written(void **state)
 	expect_error(1, "cannot write '/nowhere/x.csv'");
 	stdfit("missing.binary " CHEAP " --json -o /nowhere/x.json");
 	expect_error(1, "cannot write '/nowhere/x.json'");
+	if (THREAD_SANITIZER)
+		return;
 	shell("ulimit -f 1; exec \"$STDFIT\" synth limit.binary --kd 1");
 	expect_error(1, "cannot write 'limit.binary': File too large");
 	assert_int_equal(access("limit.binary", F_OK), -1);

@@ -30,10 +30,11 @@ static double value(const struct problem *p, double x, double y, double slope[2]
 
 static void try_point(const struct problem *p, double x, double y, double *best)
 {
-	double slope[2];
+	if (x >= p->lo[0] - 1e-12 && x <= p->hi[0] + 1e-12 && y >= p->lo[1] - 1e-12 && y <= p->hi[1] + 1e-12) {
+		double slope[2];
 
-	if (x >= p->lo[0] - 1e-12 && x <= p->hi[0] + 1e-12 && y >= p->lo[1] - 1e-12 && y <= p->hi[1] + 1e-12)
 		*best = fmin(*best, value(p, x, y, slope));
+	}
 }
 
 /* The minimum lies where two of these lines cross: residuals that vanish, edges of the box. */

@@ -318,7 +318,7 @@ static void check_same(const struct samples *got, const struct samples *want)
 
 static void round_trip(struct place *place, int n_phi_d)
 {
-	struct samples made, got;
+	struct samples made, got = {0};
 	struct error error = {{0}};
 	size_t size;
 
@@ -759,7 +759,7 @@ static void test_atomic_abort(void **state)
 	assert_int_equal(place_files(place, false), 2);
 	atomic_file_abort(&file);
 	atomic_file_abort(&file);
-	check_content(path = in(place, "out.csv"), "old\n");
+	check_content(in(place, "out.csv"), "old\n");
 	assert_int_equal(place_files(place, false), 1);
 
 	assert_int_equal(atomic_file_open(&file, in(place, "never"), NULL), STATUS_OK);

@@ -22,7 +22,7 @@ static int setup(void **state)
 	double theta[TABLES][NODES], Dx[TABLES][NODES], Dy[TABLES][NODES];
 	int n[TABLES] = {0};
 	while (golden_next(&golden)) {
-		const int i = atoi(golden.text[0] + 1), k = n[i]++;
+		const int i = golden.text[0][1] - '0', k = n[i]++;
 		assert_in_range(i, 0, TABLES - 1);
 		assert_in_range(k, 0, NODES - 1);
 		theta[i][k] = golden.value[3] * DEG;
@@ -47,7 +47,7 @@ static int teardown(void **state)
 static const struct pwl *table_named(void **state, const char *name)
 {
 	const struct tables *tables = *state;
-	const int i = atoi(name + 1);
+	const int i = name[1] - '0';
 	assert_in_range(i, 0, TABLES - 1);
 	return &tables->pwl[i];
 }
@@ -187,22 +187,33 @@ static void from_function(void **state)
 
 enum { BINS_THETA = 12, BINS_PHI = 8, BINS = BINS_THETA * BINS_PHI };
 
-/* Integral of f(pwl, o, m) over one bin in theta and phi, each theta bin cut in parts. */
-static double bin_integral(const struct pwl *pwl, struct vec3 o, int bin, int parts,
-			   double (*f)(const struct pwl *pwl, struct vec3 o, struct vec3 m),
+typedef double density(const struct pwl *pwl, struct vec3 o, struct vec3 m);
+
+static double phi_integral(const struct pwl *pwl, struct vec3 o, int bin, double theta, density *f,
 			   const gsl_integration_glfixed_table *table)
 {
+	const double from = 2.0 * M_PI * (bin % BINS_PHI) / BINS_PHI;
 	double sum = 0.0;
-	for (size_t k = 0; k < table->n * (size_t)parts; k++) {
-		double theta, w;
-		const double low = bin / BINS_PHI + (double)(k / table->n) / parts, step = M_PI_2 / BINS_THETA;
-		gsl_integration_glfixed_point(step * low, step * (low + 1.0 / parts), k % table->n, &theta, &w, table);
-		for (size_t l = 0; l < table->n; l++) {
-			double phi, w_phi;
-			const double from = 2.0 * M_PI * (bin % BINS_PHI) / BINS_PHI;
-			gsl_integration_glfixed_point(from, from + 2.0 * M_PI / BINS_PHI, l, &phi, &w_phi, table);
-			const struct vec3 m = {sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)};
-			sum += w * w_phi * sin(theta) * f(pwl, o, m);
+	for (size_t l = 0; l < table->n; l++) {
+		double phi, w;
+		gsl_integration_glfixed_point(from, from + 2.0 * M_PI / BINS_PHI, l, &phi, &w, table);
+		sum += w * f(pwl, o, (struct vec3){sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)});
+	}
+	return sum;
+}
+
+/* Integral of f(pwl, o, m) over one bin in theta and phi, each theta bin cut in parts. */
+static double bin_integral(const struct pwl *pwl, struct vec3 o, int bin, int parts, density *f,
+			   const gsl_integration_glfixed_table *table)
+{
+	const double step = M_PI_2 / BINS_THETA / parts;
+	const int first = bin / BINS_PHI * parts;
+	double sum = 0.0;
+	for (int part = first; part < first + parts; part++) {
+		for (size_t k = 0; k < table->n; k++) {
+			double theta, w;
+			gsl_integration_glfixed_point(step * part, step * (part + 1), k, &theta, &w, table);
+			sum += w * sin(theta) * phi_integral(pwl, o, bin, theta, f, table);
 		}
 	}
 	return sum;

@@ -176,7 +176,7 @@ static enum status add_materials(struct comparison *c, struct csv_table *rows)
 /* Mean, median and worst of each value column; of gains the smallest is the worst. */
 static enum status add_summary(struct comparison *c)
 {
-	double mean[MOST_VALUES], median[MOST_VALUES], worst[MOST_VALUES], wins[MOST_VALUES];
+	double mean[MOST_VALUES] = {0}, median[MOST_VALUES] = {0}, worst[MOST_VALUES] = {0}, wins[MOST_VALUES] = {0};
 	for (int i = 0; i < c->n_values; i++) {
 		double *x = c->value[i];
 		size_t n = 0;

@@ -121,12 +121,11 @@ static void add_count(char *text, const char *what, size_t n)
 /* What a sound measurement does not have. */
 static void write_suspects(char text[SUSPECTS_SIZE], const struct samples *samples, const struct census *census)
 {
-	text[0] = '\0';
 	const bool zero = census->range[0].max <= 0 && census->range[1].max <= 0 && census->range[2].max <= 0;
-	if (!census->valid_above)
-		strcpy(text, "no valid entry above the horizon");
-	else if (zero)
-		strcpy(text, "all zero");
+	snprintf(text, SUSPECTS_SIZE, "%s",
+		 !census->valid_above ? "no valid entry above the horizon"
+		 : zero               ? "all zero"
+				      : "");
 	add_count(text, "masked above the horizon", census->above - census->valid_above);
 	add_count(text, "valid below the horizon", census->valid_below);
 	add_count(text, "non-finite", samples->n_nonfinite);

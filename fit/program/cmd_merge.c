@@ -176,7 +176,8 @@ static enum status check_pair(const struct merge *m, const struct part *a, const
 static enum status sort_parts(struct merge *m, struct error *error)
 {
 	size_t kept = 0;
-	qsort(m->part, m->n, sizeof(*m->part), part_order);
+	if (m->n > 0)
+		qsort(m->part, m->n, sizeof(*m->part), part_order);
 	for (size_t i = 0; i < m->n; i++) {
 		bool same = false;
 		const struct part *last = kept ? &m->part[kept - 1] : NULL;
@@ -195,8 +196,8 @@ static enum status sort_parts(struct merge *m, struct error *error)
 /* The first row of the next file. */
 static size_t next_file(const struct merge *m, size_t i)
 {
-	const char *path = m->part[i].cell[RESULT_PATH];
-	while (i < m->n && !strcmp(m->part[i].cell[RESULT_PATH], path))
+	const struct part *first = m->part + i;
+	while (i < m->n && !strcmp(m->part[i].cell[RESULT_PATH], first->cell[RESULT_PATH]))
 		i++;
 	return i;
 }

@@ -262,7 +262,7 @@ static enum status find_columns(const struct csv_table *table, const struct read
 {
 	for (int c = 0; c < table->n_columns; c++) {
 		place[c] = 0;
-		while (place[c] < r->n_fields && strcmp(r->field[place[c]], table->column[c].name))
+		while (place[c] < r->n_fields && strcmp(r->field[place[c]], table->column[c].name) != 0)
 			place[c]++;
 		if (place[c] == r->n_fields && c < needed)
 			return error_set(error, STATUS_FORMAT,

@@ -78,10 +78,11 @@ static void write_usage(FILE *file, enum command c)
 
 static void write_option(FILE *file, const struct options *defaults, const struct option_spec *spec)
 {
-	char letter[] = {'-', (char)spec->letter, '\0'}, *text = NULL;
+	char *text = NULL;
 	size_t size;
 	fputs(".TP\n", file);
 	if (spec->letter) {
+		const char letter[] = {'-', (char)spec->letter, '\0'};
 		write_in(file, 'B', letter);
 		fputs(", ", file);
 	}

@@ -248,7 +248,7 @@ static enum status parse_shard(const struct option_spec *spec, const char *text,
 			       struct error *error)
 {
 	char number[CSV_NUMBER_SIZE];
-	struct shard found;
+	struct shard found = {0};
 	const size_t length = strcspn(text, "/");
 	snprintf(number, sizeof number, "%.*s", (int)(length % sizeof number), text);
 	if (length >= sizeof number || !text[length] || parse_int(spec, number, &found.i, NULL) ||

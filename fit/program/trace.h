@@ -26,8 +26,8 @@ struct trace {
 	bool incomplete; /* memory ran out; later points are missing */
 };
 
-/* trace_note - appends a point: what fit_options.trace calls, `trace` being a struct trace. */
-void trace_note(void *trace, const struct fit_trace *point);
+/* trace_note - appends a point: what fit_options.trace calls, `data` being a struct trace. */
+void trace_note(void *data, const struct fit_trace *point);
 void trace_free(struct trace *trace);
 
 /* trace_write - the rows of one material and algorithm, those of an NDF one after another. Failures show in ferror().

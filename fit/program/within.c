@@ -228,7 +228,7 @@ enum status within_run(const struct fit_context *context, const struct samples *
 	const unsigned all = all_terms(options);
 	/* First the whole model less one term: where that fails, it spares all variants inside. Then the simplest. */
 	for (unsigned term = 1; term < TERMS && !status; term <<= 1) {
-		const int i = term & all ? find_variant(&s.list, all & ~term, richest) : -1;
+		const int i = (term & all) ? find_variant(&s.list, all & ~term, richest) : -1;
 		if (i >= 0)
 			status = try_variant(&s, i, error);
 	}
