@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "free_form.h"
+#include "weighted_median.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,38 +40,9 @@ struct run {
 	const struct fit_options *options;
 	const struct table *sample; /* where node values are proposed */
 	struct objective full, thin;
-	struct term *terms;
+	struct wish *wishes;
 	long evaluations;
 };
-
-/* One entry's wish: D = value makes the model right there; weight: what a unit of D adds to the model. */
-struct term {
-	float value, weight;
-};
-
-static int by_value(const void *a, const void *b)
-{
-	const float x = ((const struct term *)a)->value, y = ((const struct term *)b)->value;
-
-	return (x > y) - (x < y);
-}
-
-static double weighted_median(struct term *term, size_t n, double otherwise)
-{
-	double total = 0, sum = 0;
-
-	for (size_t a = 0; a < n; a++)
-		total += (double)term[a].weight;
-	if (!(total > 0))
-		return otherwise;
-	qsort(term, n, sizeof *term, by_value);
-	for (size_t a = 0; a < n; a++) {
-		sum += (double)term[a].weight;
-		if (sum >= total / 2)
-			return fmax(0, (double)term[a].value);
-	}
-	return otherwise;
-}
 
 /* What the normalisation has made of the values. */
 static double scale_of(const double before[], const double after[])
@@ -110,8 +82,8 @@ static enum status evaluate(struct run *r, struct state *s, double tolerance, bo
 	return STATUS_OK;
 }
 
-/* Adds what slot n says about its row, whose terms begin at `term`. Returns how many terms it added. */
-static int slot_terms(const struct run *r, const struct state *s, size_t n, struct term *term)
+/* Adds what slot n says about its row, whose wishes begin at `wish`. Returns how many it added. */
+static int slot_wishes(const struct run *r, const struct state *s, size_t n, struct wish *wish)
 {
 	const struct table *t = r->sample;
 	const int block = (int)(n / KERNEL_BLOCK), members = block < t->n_pair_blocks ? 2 : 1;
@@ -123,7 +95,7 @@ static int slot_terms(const struct run *r, const struct state *s, size_t n, stru
 			    below = (float)(s->linear.kd[c] / M_PI) * t->w[n];
 
 		for (int a = 0; a < members && per_D > 0; a++)
-			term[count++] = (struct term){(value[a * KERNEL_BLOCK] - below) / per_D, per_D};
+			wish[count++] = (struct wish){(value[a * KERNEL_BLOCK] - below) / per_D, per_D};
 	}
 	return count;
 }
@@ -154,11 +126,11 @@ static enum status propose(struct run *r, const struct state *s, double D[SAMPLE
 	for (size_t n = 0; n < slots; n++) {
 		const int i = t->row[n] / SAMPLES_THETA_D;
 
-		end[i] += (size_t)slot_terms(r, s, n, r->terms + end[i]);
+		end[i] += (size_t)slot_wishes(r, s, n, r->wishes + end[i]);
 	}
 #pragma omp parallel for num_threads(r->options->threads) schedule(dynamic) if (r->options->threads > 1)
 	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		D[i] = weighted_median(r->terms + begin[i], end[i] - begin[i], s->D[i]);
+		D[i] = weighted_median(r->wishes + begin[i], end[i] - begin[i], s->D[i]);
 	return STATUS_OK;
 }
 
@@ -336,7 +308,7 @@ enum status free_form_run(const struct levels *levels, const struct fit_options 
 {
 	struct run r = {.options = options, .sample = &levels->table[SEARCH_LEVELS - 2]};
 	const struct table *full = &levels->table[SEARCH_LEVELS - 1];
-	const size_t terms = (size_t)r.sample->n_blocks * KERNEL_BLOCK * 2 * SAMPLES_CHANNELS;
+	const size_t wishes = (size_t)r.sample->n_blocks * KERNEL_BLOCK * 2 * SAMPLES_CHANNELS;
 	const struct ndf_class *class = ndf_find("pl");
 	enum status status = objective_init(&r.full, full, options, class, 1, MASKING_FINE);
 	struct state best = {0};
@@ -344,8 +316,8 @@ enum status free_form_run(const struct levels *levels, const struct fit_options 
 	*found = (struct found){.starts = n_starts, .starts_agreeing = 1};
 	if (status == STATUS_OK)
 		status = objective_init(&r.thin, r.sample, options, class, 1, MASKING_FINE);
-	r.terms = malloc(terms * sizeof *r.terms);
-	if (status == STATUS_OK && !r.terms)
+	r.wishes = malloc(wishes * sizeof *r.wishes);
+	if (status == STATUS_OK && !r.wishes)
 		status = STATUS_NO_MEMORY;
 	if (status == STATUS_OK)
 		status = run_all(&r, starts, n_starts, &best);
@@ -359,7 +331,7 @@ enum status free_form_run(const struct levels *levels, const struct fit_options 
 	}
 	found->evaluations = r.evaluations;
 	found->passes = r.full.passes;
-	free(r.terms);
+	free(r.wishes);
 	objective_free(&r.thin);
 	objective_free(&r.full);
 	return status;

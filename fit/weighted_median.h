@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* weighted_median - the factor D of a model m = below + D per_D that is nearest to many values in the L1 sense. */
+#ifndef WEIGHTED_MEDIAN_H
+#define WEIGHTED_MEDIAN_H
+
+#include <stddef.h>
+
+/* One entry's wish: D = value makes the model right there; weight: what a unit of D adds to the model. */
+struct wish {
+	float value, weight;
+};
+
+/* weighted_median - the D >= 0 that minimises sum weight |value - D|; puts the wishes in order.
+ * Returns: `otherwise` where there is none of positive weight. */
+double weighted_median(struct wish *wish, size_t n, double otherwise);
+
+#endif
