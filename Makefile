@@ -23,7 +23,7 @@ ALL_CFLAGS = -std=c11 -D_GNU_SOURCE $(warnings) $(OPT) -fopenmp $(fpflags) $(add
 LIBS = $(pkg_libs) -lm
 
 # Each uses only those before it.
-folders := src data_readers fit fit/export fit/program
+folders := src data_readers fit fit/export fit/plot fit/program
 lib_sources := $(filter-out fit/program/main.c,$(foreach folder,$(folders),$(wildcard $(folder)/*.c)))
 lib_objects := $(lib_sources:%.c=$(BUILD)/%.o)
 

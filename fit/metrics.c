@@ -2,6 +2,7 @@
 #include "metrics.h"
 #include "masking.h"
 #include <math.h>
+#include <stdlib.h>
 
 /* Sums over the entries and channels of one theta_h. */
 struct sums {
@@ -143,8 +144,9 @@ static double lobe_at(const struct parts *p, const struct geometry *g, int n, do
 	return i > 0 && o > 0 ? spread / (4 * c * (1 / i + 1 / o - 1)) : 0;
 }
 
+/* One theta_h, all its rows into sums[0] or each into sums[its theta_d]. */
 static void sum_theta_h(const struct geometry *g, const struct samples *samples, const struct cook_torrance *model,
-			const struct parts *parts, int i, struct sums *sums)
+			const struct parts *parts, int i, bool by_row, struct sums *sums)
 {
 	struct row row = {.n = 0};
 
@@ -153,7 +155,9 @@ static void sum_theta_h(const struct geometry *g, const struct samples *samples,
 
 		add_entries(&row, g, samples, n, c, lobe_at(parts, g, n, c));
 		if (n + 1 == g->first[i + 1] || g->row[n + 1] != g->row[n]) {
-			sum_row(&row, model, cell_measure(i, g->row[n] % SAMPLES_THETA_D), sums);
+			const int j = g->row[n] % SAMPLES_THETA_D;
+
+			sum_row(&row, model, cell_measure(i, j), &sums[by_row ? j : 0]);
 			row.n = 0;
 		}
 	}
@@ -169,7 +173,7 @@ enum status metrics_compute(const struct geometry *g, const struct samples *samp
 		return STATUS_NO_MEMORY;
 #pragma omp parallel for num_threads(threads) schedule(dynamic) if (threads > 1)
 	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		sum_theta_h(g, samples, model, &parts, i, &sums[i]);
+		sum_theta_h(g, samples, model, &parts, i, false, &sums[i]);
 	masking_free(&parts.masking);
 	for (int i = 0; i < SAMPLES_THETA_H; i++) {
 		for (int w = 0; w < WEIGHT_COUNT; w++) {
@@ -189,5 +193,25 @@ enum status metrics_compute(const struct geometry *g, const struct samples *samp
 	metrics->rms_cube_root = sqrt(all.cube_root / (double)all.n);
 	metrics->log_error = all.log / (double)all.n;
 	metrics->samples = all.n;
+	return STATUS_OK;
+}
+
+enum status metrics_rows(const struct geometry *g, const struct samples *samples, const struct cook_torrance *model,
+			 int threads, struct metrics_row row[TABLE_ROWS])
+{
+	struct sums *sums = calloc(TABLE_ROWS, sizeof *sums);
+	struct parts parts;
+
+	if (!sums || parts_init(&parts, g, model) != STATUS_OK) {
+		free(sums);
+		return STATUS_NO_MEMORY;
+	}
+#pragma omp parallel for num_threads(threads) schedule(dynamic) if (threads > 1)
+	for (int i = 0; i < SAMPLES_THETA_H; i++)
+		sum_theta_h(g, samples, model, &parts, i, true, sums + (size_t)i * SAMPLES_THETA_D);
+	masking_free(&parts.masking);
+	for (int n = 0; n < TABLE_ROWS; n++)
+		row[n] = (struct metrics_row){sums[n].difference[g->weight], sums[n].measured[g->weight], sums[n].n};
+	free(sums);
 	return STATUS_OK;
 }

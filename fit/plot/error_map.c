@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "error_map.h"
+#include <math.h>
+
+enum status error_map_make(const struct samples *samples, const struct cook_torrance *model,
+			   const struct fit_options *options, struct metrics_row row[TABLE_ROWS])
+{
+	struct fit_options own = *options;
+	struct geometry geometry;
+
+	own.gaf = model->gaf;
+	enum status status = geometry_init(&geometry, samples->n_phi_d, &own);
+	if (status == STATUS_OK)
+		status = metrics_rows(&geometry, samples, model, options->threads, row);
+	geometry_free(&geometry);
+	return status;
+}
+
+double error_map_error(const struct metrics_row *row)
+{
+	if (row->samples == 0)
+		return NAN;
+	return row->difference > 0 ? row->difference / row->measured : 0;
+}

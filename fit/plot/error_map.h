@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* error_map - where in a table a model fails. */
+#ifndef ERROR_MAP_H
+#define ERROR_MAP_H
+
+#include "fit.h"
+#include "metrics.h"
+
+/* error_map_make - the sums of E row by row, under the options' weight, bins, max_theta and the model's own G.
+ * Returns: row[theta_d index + 90 theta_h index], see metrics.h
+ * Errors:  STATUS_NO_MEMORY */
+MUST_CHECK enum status error_map_make(const struct samples *samples, const struct cook_torrance *model,
+				      const struct fit_options *options, struct metrics_row row[TABLE_ROWS]);
+
+/* error_map_error - E of one row alone: 0 where the model is perfect, 1 where a black one would do as well, infinite
+ * where nothing but zeros was measured and the model is not zero; NaN without data. */
+double error_map_error(const struct metrics_row *row);
+
+#endif

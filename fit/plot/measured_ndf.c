@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "measured_ndf.h"
+#include "entries.h"
+#include "masking.h"
+#include "weighted_median.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Bounds of what counts, see measured_ndf.h. */
+enum { THETA_D_MOST = 30, TAIL_NODES = 40 };
+static const double steepest = 80 * M_PI / 180;
+
+struct reading {
+	const struct samples *samples;
+	const struct cook_torrance *model;
+	struct entries entries;
+	struct masking masking;
+	struct wish *wish; /* room for one theta_h */
+	double min_cos;
+};
+
+/* What a unit of D and of ks adds to the model. */
+static double lobe_per_D(const struct reading *r, struct vec3 wi, struct vec3 wo, double F)
+{
+	const struct cook_torrance *model = r->model;
+	double G;
+
+	if (model->gaf == GAF_V_GROOVE) {
+		G = gaf_G(GAF_V_GROOVE, &model->ndf, wi, wo);
+	} else {
+		const double i = masking_at(&r->masking, masking_q(wi)), o = masking_at(&r->masking, masking_q(wo));
+
+		G = model->gaf == GAF_UNCORRELATED ? i * o : 1 / (1 / i + 1 / o - 1);
+	}
+	return F * G / (4 * wi.z * wo.z);
+}
+
+/* The wishes of entry (i, j, k), one a channel; returns how many. */
+static size_t entry_wishes(const struct reading *r, int i, int j, int k, double F, struct wish *wish)
+{
+	const struct samples *samples = r->samples;
+	const size_t at = (size_t)(j + SAMPLES_THETA_D * i) * (size_t)samples->n_phi_d + (size_t)k;
+	struct vec3 wi, wo;
+	size_t n = 0;
+
+	entries_dirs(&r->entries, i, j, k, &wi, &wo);
+	if (wi.z < r->min_cos || wo.z < r->min_cos || isnan(samples->value[0][at]))
+		return 0;
+	const double lobe = lobe_per_D(r, wi, wo, F);
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		const double per_D = r->model->ks[c] * lobe;
+		const double wanted = (double)samples->value[c][at] - r->model->kd[c] / M_PI;
+
+		if (per_D > 0)
+			wish[n++] = (struct wish){(float)(wanted / per_D), (float)per_D};
+	}
+	return n;
+}
+
+static double read_row(const struct reading *r, int i)
+{
+	size_t n = 0;
+
+	for (int j = 0; j <= THETA_D_MOST; j++) {
+		const double F = fresnel_F(r->model->fresnel, r->entries.theta[j].cos_d, r->model->n, r->model->k);
+
+		for (int k = 0; k < r->samples->n_phi_d; k++)
+			n += entry_wishes(r, i, j, k, F, r->wish + n);
+	}
+	return weighted_median(r->wish, n, NAN);
+}
+
+static enum status read_rows(const struct samples *samples, const struct cook_torrance *model, enum bins bins,
+			     double D[])
+{
+	struct reading r = {.samples = samples,
+			    .model = model,
+			    .entries = entries_make(bins, samples->n_phi_d),
+			    .min_cos = cos(steepest)};
+	const size_t most = (size_t)(THETA_D_MOST + 1) * (size_t)samples->n_phi_d * SAMPLES_CHANNELS;
+	const int32_t q_min = masking_q((struct vec3){sin(steepest), 0, cos(steepest)}) - 1;
+
+	r.wish = malloc(most * sizeof *r.wish);
+	const enum status status = r.wish ? masking_init(&r.masking, q_min, MASKING_FINE) : STATUS_NO_MEMORY;
+	if (status == STATUS_OK && model->gaf != GAF_V_GROOVE)
+		masking_fill(&r.masking, &model->ndf);
+	for (int i = 0; i < SAMPLES_THETA_H && status == STATUS_OK; i++)
+		D[i] = read_row(&r, i);
+	if (status == STATUS_OK)
+		masking_free(&r.masking);
+	free(r.wish);
+	return status;
+}
+
+/* D of the fit, at its last finite value where there is none at the horizon. */
+static double fitted_D(const struct cook_torrance *model, double theta)
+{
+	return ndf_D(&model->ndf, (struct vec3){sin(theta), 0, cos(theta)});
+}
+
+/* Nodes: the rows that are known, then the tail, ever closer to the horizon. */
+static int make_nodes(const double D[], const struct cook_torrance *model, enum bins bins, double theta[],
+		      double value[])
+{
+	int n = 0;
+	double known = NAN;
+
+	for (int i = 0; i < SAMPLES_THETA_H; i++) {
+		const double at = bins_angles(bins, i, 0, 0).theta_h;
+
+		if (isnan(D[i]))
+			continue;
+		if (n == 0 && at > 0) {
+			theta[n] = 0;
+			value[n++] = D[i];
+		}
+		theta[n] = at;
+		value[n++] = D[i];
+		known = at;
+	}
+	if (n == 0)
+		return 0;
+	const double fitted = fitted_D(model, known), ratio = fitted > 0 ? value[n - 1] / fitted : 0;
+	const double rest = M_PI / 2 - known;
+	for (int t = 1; t <= TAIL_NODES; t++) {
+		const double left = rest * pow(1e-6 / rest, (double)t / TAIL_NODES);
+
+		theta[n] = M_PI / 2 - left;
+		value[n] = ratio * fitted_D(model, theta[n]);
+		n++;
+	}
+	theta[n] = M_PI / 2;
+	value[n] = value[n - 1];
+	return n + 1;
+}
+
+enum status measured_ndf_make(const struct samples *samples, const struct cook_torrance *model, enum bins bins,
+			      struct measured_ndf *ndf)
+{
+	double theta[SAMPLES_THETA_H + TAIL_NODES + 2], value[SAMPLES_THETA_H + TAIL_NODES + 2];
+
+	*ndf = (struct measured_ndf){.scale = NAN};
+	enum status status = read_rows(samples, model, bins, ndf->D);
+	if (status != STATUS_OK)
+		return status;
+	const int n = make_nodes(ndf->D, model, bins, theta, value);
+	if (n == 0)
+		return STATUS_NO_DATA;
+	status = pwl_init(&ndf->pwl, n, theta, value, NULL);
+	if (status == STATUS_DOMAIN)
+		return STATUS_NO_DATA; /* zeros only */
+	for (int a = 0; a < n && status == STATUS_OK && isnan(ndf->scale); a++)
+		if (value[a] > 0)
+			ndf->scale = ndf->pwl.nodes[a].Fx / value[a];
+	return status;
+}
+
+void measured_ndf_free(struct measured_ndf *ndf)
+{
+	pwl_free(&ndf->pwl);
+}

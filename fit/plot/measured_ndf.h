@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* measured_ndf - the NDF read off a table with the help of a fit.
+ *
+ * With kd, ks, n and G of the fit held fixed, each entry asks for one D(theta_h): the one that makes the model right there,
+ * D = (m - kd/pi) 4 cos_i cos_o / (ks F G). Of each theta_h the D is taken that brings the sum of |m - f| lowest, the
+ * median of those wishes weighted by what a unit of D adds to f. Only entries with theta_d <= 30 degrees count, where F is
+ * all but constant and G the same for wi and wo, and with theta_i, theta_o <= 80 degrees, where measurements can be
+ * trusted. A cheap estimate: the free form `pl` (free_form.h) has kd, ks, n and G follow D as well. */
+#ifndef MEASURED_NDF_H
+#define MEASURED_NDF_H
+
+#include "cook_torrance.h"
+#include "pwl.h"
+#include "samples.h"
+
+struct measured_ndf {
+	double D[SAMPLES_THETA_H]; /* 1/sr; NaN where nothing was measured */
+	/* The same as a distribution, normalised, for its G1. Beyond the last theta_h with data the fit's own tail goes
+	 * on from there: masking comes from steep facets that no table shows. */
+	struct pwl pwl;
+	double scale; /* factor of the normalisation: 1 if ks, F and D of the fit agree with the data */
+};
+
+/* measured_ndf_make - reads the NDF off `samples`.
+ * Errors: STATUS_NO_DATA: the model has no specular term, or no entry that counts shows one; STATUS_NO_MEMORY.
+ * *ndf is then empty. */
+MUST_CHECK enum status measured_ndf_make(const struct samples *samples, const struct cook_torrance *model,
+					 enum bins bins, struct measured_ndf *ndf);
+void measured_ndf_free(struct measured_ndf *ndf);
+
+#endif

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "slice.h"
+
+enum { MIDDLE = 90 }; /* index of phi_d, in the 360 table too */
+
+void slice_measured(const struct samples *samples, int i, int j, double m[SAMPLES_CHANNELS])
+{
+	const size_t at = (size_t)(j + SAMPLES_THETA_D * i) * (size_t)samples->n_phi_d + MIDDLE;
+
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		m[c] = (double)samples->value[c][at];
+}
+
+void slice_model(const struct cook_torrance *model, enum bins bins, int i, int j, double f[SAMPLES_CHANNELS])
+{
+	struct vec3 wi, wo;
+
+	halfdiff_trig_dirs(bins_trig(bins, i, j, MIDDLE), &wi, &wo);
+	cook_torrance_f(model, wi, wo, f);
+}

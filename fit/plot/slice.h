@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* slice - lines through a table at phi_d = 90 degrees, where light and view stand alike and all theta_h are above the
+ * horizon: measured and modelled values side by side. */
+#ifndef SLICE_H
+#define SLICE_H
+
+#include "cook_torrance.h"
+#include "samples.h"
+
+/* slice_measured - entry (i, j) at phi_d = 90 (90.5 at centres) degrees into m[3], 1/sr; NaN where masked. */
+void slice_measured(const struct samples *samples, int i, int j, double m[SAMPLES_CHANNELS]);
+
+/* slice_model - the model there, 1/sr. */
+void slice_model(const struct cook_torrance *model, enum bins bins, int i, int j, double f[SAMPLES_CHANNELS]);
+
+#endif
