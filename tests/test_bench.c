@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The program: bench, --trace, --algorithm, and the plot of a trace. Runs $STDFIT or build/stdfit. */
+/* The program: bench, --trace, --algorithm. Runs $STDFIT or build/stdfit. */
 #include "check.h"
 #include "result.h"
 #include "trace.h"
@@ -12,8 +12,7 @@
 
 static char directory[] = "/tmp/stdfit-bench-XXXXXX";
 
-/* Runs a shell command in the temporary directory: "$STDFIT" is the program, "$SCRIPTS" the scripts. Returns its exit
- * code. */
+/* Runs a shell command in the temporary directory: "$STDFIT" is the program. Returns its exit code. */
 static int shell(const char *command)
 {
 	const int status = system(command);
@@ -71,9 +70,6 @@ static int set_up(void **state)
 	/* Against a program that does not end. */
 	alarm(300);
 	assert_non_null(top);
-	assert_true(asprintf(&path, "%s/scripts", top) > 0);
-	setenv("SCRIPTS", path, 1);
-	free(path);
 	assert_true(asprintf(&path, "%s/%s", top, program ? program : "build/stdfit") > 0);
 	setenv("STDFIT", program && program[0] == '/' ? program : path, 1);
 	free(path);
@@ -345,26 +341,6 @@ static void a_bench_can_be_interrupted(void **state)
 	expect_run("ls -A | grep -q '[.]tmp$'", 1);
 }
 
-static void a_trace_can_be_plotted(void **state)
-{
-	(void)state;
-	expect_run("echo 'material,ndf,algorithm,stage,evaluations,seconds,error' >p.csv; "
-		   "for a in default crs2 crs2-joint; do echo \"a,b,std,$a,full,1,0.1,0.9\"; echo "
-		   "\"a,b,std,$a,full,9,2,0.3\"; "
-		   "done >>p.csv",
-		   0);
-	expect_run("PATH=/nowhere /bin/sh \"$SCRIPTS/plot_trace.sh\" p.csv p 2>err", 1);
-	expect_run("grep -q 'gnuplot is not installed' err", 0);
-	expect_run("\"$SCRIPTS/plot_trace.sh\" p.csv 2>err", 2);
-	if (shell("command -v gnuplot >/dev/null") != 0)
-		skip();
-	expect_run("\"$SCRIPTS/plot_trace.sh\" p.csv p", 0);
-	expect_run("[ \"$(head -c 4 p.png | tail -c 3)\" = PNG ]", 0);
-	expect_run("grep -q '</svg>' p.svg && grep -q crs2-joint p.svg && [ ! -e p.svg.part ]", 0);
-	expect_run("\"$SCRIPTS/plot_trace.sh\" m.binary q 2>err", 1);
-	expect_run("grep -q 'is no trace' err && [ ! -e q.png ]", 0);
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -375,7 +351,6 @@ int main(void)
 		cmocka_unit_test(a_fit_records_its_algorithm),
 		cmocka_unit_test(wrong_usage),
 		cmocka_unit_test(a_bench_can_be_interrupted),
-		cmocka_unit_test(a_trace_can_be_plotted),
 	};
 
 	return cmocka_run_group_tests_name("bench", tests, set_up, tear_down);

@@ -24,6 +24,7 @@ enum command {
 	COMMAND_EXPORT,
 	COMMAND_NDF,
 	COMMAND_SAMPLE,
+	COMMAND_PLOT,
 	COMMAND_COUNT
 };
 
@@ -38,5 +39,6 @@ int cmd_export(int argc, char **argv, atomic_bool *cancel);
 int cmd_ndf(int argc, char **argv, atomic_bool *cancel);
 int cmd_sample(int argc, char **argv, atomic_bool *cancel);
 int cmd_synth(int argc, char **argv, atomic_bool *cancel);
+int cmd_plot(int argc, char **argv, atomic_bool *cancel);
 
 #endif

@@ -19,8 +19,10 @@
 #define EXPORT (1u << COMMAND_EXPORT)
 #define NDF (1u << COMMAND_NDF)
 #define SAMPLE (1u << COMMAND_SAMPLE)
-#define FITS (FIT | COMPARE)
+#define PLOT (1u << COMMAND_PLOT)
+#define FITS (FIT | COMPARE | PLOT)
 #define SEARCHES (FITS | BENCH)
+#define TABLES (FIT | COMPARE | BENCH)
 #define MODEL (EVAL | SYNTH)
 #define SOURCES EXPORT /* a fit, a row or given parameters: model_source.h */
 #define AT(member) offsetof(struct options, member)
@@ -33,8 +35,10 @@ const struct option_spec option_specs[] = {
 	 "write the table there; an older FILE becomes FILE~", AT(output), 0, 0},
 	{"output", 'o', KIND_TEXT, EXPORT, NOT_RECORDED, "FILE", "write it there, not to standard output", AT(output), 0, 0},
 	{"format", 0, KIND_FORMAT, EXPORT, NOT_RECORDED, "NAME", "what to write", AT(format), 0, 0},
-	{"json", 0, KIND_ON, SEARCHES | MERGE | EVAL | INFO | NDF | SAMPLE, NOT_RECORDED, NULL, "JSON instead of CSV", AT(json), 0, 0},
-	{"table", 0, KIND_ON, SEARCHES | MERGE | EVAL | INFO | NDF | SAMPLE, NOT_RECORDED, NULL,
+	{"output", 'o', KIND_TEXT, PLOT, NOT_RECORDED, "DIR", "the directory to write to; made if it is not there",
+	 AT(output), 0, 0},
+	{"json", 0, KIND_ON, TABLES | MERGE | EVAL | INFO | NDF | SAMPLE, NOT_RECORDED, NULL, "JSON instead of CSV", AT(json), 0, 0},
+	{"table", 0, KIND_ON, TABLES | MERGE | EVAL | INFO | NDF | SAMPLE, NOT_RECORDED, NULL,
 	 "a readable table on standard output even if that is no terminal", AT(readable), 0, 0},
 	{"resume", 0, KIND_ON, FIT, NOT_RECORDED, NULL,
 	 "keep the rows of -o FILE that were made from the same bytes with the same options", AT(resume), 0, 0},

@@ -65,6 +65,12 @@ static const struct command_text commands[COMMAND_COUNT] = {
 	[COMMAND_SYNTH] = {"synth", "OUT.binary", "write a MERL file of a model",
 			   "Writes the table that an ideal measurement of the model would give; -1 below the\n"
 			   "horizon.\n"},
+	[COMMAND_PLOT] = {"plot", "PATH...", "fits, or the course of searches, as plots by gnuplot",
+			  "Takes a result table (FILE.csv), or fits MERL files or directories. Writes into the directory\n"
+			  "of -o the errors of all materials, sorted; and per material D and G1 of each fit against the\n"
+			  "NDF read off the data, slices, measured against fitted, and the error over theta_h and\n"
+			  "theta_d: each as PNG, SVG, CSV and the script that draws it. Of a trace (see fit --trace) it\n"
+			  "draws the error against time.\n"},
 };
 
 const struct command_text *options_command(enum command command)

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot_common.h"
+#include "csv.h"
+#include "text_quote.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum status plot_open(struct atomic_file *file, const char *directory, const char *name, struct error *error)
+{
+	char *path;
+	if (asprintf(&path, "%s/%s", directory, name) < 0)
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	const enum status status = atomic_file_open(file, path, error);
+	free(path);
+	return status;
+}
+
+/* A number behind a comma; nothing for NaN. */
+void plot_number(FILE *file, double x)
+{
+	char text[CSV_NUMBER_SIZE];
+	fprintf(file, ",%s", csv_number(text, x));
+}
+
+void plot_text(FILE *file, const char *text)
+{
+	char shown[TEXT_QUOTE_SIZE];
+	/* gnuplot knows no quote inside a quoted cell. */
+	text_quote(text, shown, sizeof shown);
+	for (char *c = shown; *c; c++)
+		if (*c == '"')
+			*c = '\'';
+	fprintf(file, "\"%s\"", shown);
+}
+
+const char *plot_colour(const char *ndf, int i)
+{
+	static const char *const own[][2] = {{"std", "#0077bb"}, {"ggx", "#cc3311"}, {"beckmann", "#000000"},
+					     {"pl", "#009988"},  {"low", "#ee7733"}, {"gtr", "#aa4499"}};
+	static const char *const other[] = {"#882255", "#999933", "#33bbee", "#666666"};
+	for (size_t n = 0; n < sizeof own / sizeof *own; n++)
+		if (!strcmp(own[n][0], ndf))
+			return own[n][1];
+	return other[(size_t)i % (sizeof other / sizeof *other)];
+}
+
+void plot_range_add(struct plot_range *range, double x)
+{
+	if (!(x > 0 && isfinite(x)))
+		return;
+	range->low = range->low > 0 && range->low < x ? range->low : x;
+	range->high = range->high > x ? range->high : x;
+}
+
+void plot_log_range(FILE *file, const struct plot_range *range, double below, double above)
+{
+	const bool known = range->high > 0;
+	fprintf(file, "set logscale y\nset mytics 1\nset format y \"10^{%%T}\"\nset yrange [%.3g:%.3g]\n",
+		known ? range->low / below : 1e-3, known ? range->high * above : 1e3);
+}
