@@ -337,6 +337,16 @@ static void glslang_takes_it(void **state)
 			if (system(command) != 0)
 				fail_msg("glslangValidator refuses %s", names[i]);
 		}
+	struct pwl pwl;
+	struct cook_torrance model = make_model("ggx", 0.2, 2, 1.5);
+	make_pwl(&pwl);
+	ndf_from_pwl(&model.ndf, &pwl);
+	char *text = export_text(&model);
+	write_fragment_shader(path, text);
+	free(text);
+	pwl_free(&pwl);
+	if (system(command) != 0)
+		fail_msg("glslangValidator refuses pl");
 	unlink(path);
 	strcat(path, ".out");
 	unlink(path);

@@ -275,6 +275,14 @@ static void from_a_table(void **state)
 	assert_int_equal(ndf_init(&ndf, ndf_find("ggx"), 0.2, 0.2, 2), STATUS_OK);
 	same(&table, 1, IN_D, ndf_D(&ndf, vec3_from_spherical_deg(20, 0)));
 	csv_table_free(&table);
+	/* What is written describes the distribution again. */
+	stdfit("fit m.binary --ndf std,low,t-family --max-theta 12 --ior 1.5 -q -o forms.csv");
+	expect_code(0);
+	shell("\"$STDFIT\" ndf --from forms.csv --theta 0:80:20 --theta-i 10 >first.csv && \"$STDFIT\" ndf - "
+	      "<first.csv | "
+	      "cmp - first.csv");
+	if (last.code)
+		fail_msg("%s%s", last.out, last.err);
 	stdfit("sample --from fits.csv --row 2 --count 3");
 	expect_code(0);
 	assert_int_equal(count_lines(last.out), 4);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "stand_in.h"
 #include "export_format.h"
+#include "gray_specular.h"
 #include "model_table.h"
 #include "text_quote.h"
 
@@ -63,6 +64,8 @@ bool stand_in_needed(const struct target *target, const struct cook_torrance *mo
 		add_text(text, " no %s G,", gaf_name(model->gaf));
 	if (!(target->fresnel & 1u << model->fresnel))
 		add_text(text, " no Fresnel term %s,", fresnel_name(model->fresnel));
+	if (target->gray && !is_gray(model->ks))
+		add_text(text, " no ks of its own for each channel,");
 	if (target->sigma_max > 0 && model->ndf.sigma_x / model->ndf.stretch > target->sigma_max)
 		add_text(text, " no roughness of %.5g,", model->ndf.sigma_x);
 	const size_t length = strlen(text);
@@ -179,6 +182,8 @@ static enum status fit_stand_in(struct export *export, const struct target *targ
 	*raised = !status && target->blend && !fits_blend(&export->model);
 	if (*raised)
 		status = fit_blend(context, samples, &fit, target, &export->model, error);
+	if (!status && target->gray && fit.diffuse && gray_specular(samples, &fit, &export->model))
+		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
 	fit_context_free(context);
 	return status;
 }
@@ -243,10 +248,10 @@ enum status stand_in_prepare(struct export *export, const struct target *target,
 	const struct cook_torrance *given = export->source.model;
 	struct samples own;
 	take(export);
-	if (target->gray && !is_gray(given->ks))
+	if (target->gray && !is_gray(given->ks) && !(export_max(given->kd) > 0))
 		return error_set(error, STATUS_UNSUPPORTED,
-				 "%s has one factor for all channels: ks %.5g, %.5g, %.5g would lose "
-				 "its colour (--gray fits without)",
+				 "%s has one ks for all channels, and without kd the colour of ks %.5g, %.5g, %.5g "
+				 "would be lost (--gray fits one)",
 				 target->name, given->ks[0], given->ks[1], given->ks[2]);
 	export->stand_in = stand_in_needed(target, given, lacks);
 	if (!export->stand_in && target->blend && !fits_blend(given) && export_max(given->ks) > 0) {

@@ -38,18 +38,31 @@ static enum status describe(const struct options *options, struct described *ite
 	return distribution_make(&item->words, &item->distribution, error);
 }
 
-/* The distribution of a model, whose table stays with the model. */
+/* The distribution of a model, whose table stays with the model, and the words that make it again; there are none for
+ * a table. */
 static void take(const struct source_model *model, struct described *item)
 {
 	const struct ndf *ndf = &model->model.ndf;
 	item->distribution = (struct distribution){.name = ndf_name(ndf->class), .ndf = *ndf};
 	item->gaf = model->model.gaf;
-	item->words.name = item->distribution.name;
-	item->words.lambda = lambda_form_name(ndf->lambda_form);
-	if (ndf_is_tabulated(ndf->class))
-		return;
-	item->words.sigma = csv_number(item->sigma, ndf->sigma_x);
-	item->words.gamma = csv_number(item->gamma, ndf->gamma);
+	item->words = (struct distribution_words){.name = item->distribution.name,
+						  .sigma = item->sigma,
+						  .gamma = item->gamma,
+						  .params = item->params,
+						  .lambda = lambda_form_name(ndf->lambda_form)};
+	for (int i = 0; ndf_param_at(ndf->class, i); i++) {
+		const char *name = ndf_param_at(ndf->class, i)->name;
+		char number[CSV_NUMBER_SIZE];
+		const size_t used = strlen(item->params);
+		csv_number(number, ndf->param[i]);
+		if (!strcmp(name, "sigma"))
+			strcpy(item->sigma, number);
+		else if (!strcmp(name, "gamma"))
+			strcpy(item->gamma, number);
+		else
+			snprintf(item->params + used, sizeof item->params - used, "%s%s=%s", used ? ";" : "", name,
+				 number);
+	}
 }
 
 enum status distribution_source_read(const struct options *options, struct distribution_source *source,

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gray_specular.h"
+#include "entries.h"
+#include "table.h"
+
+#include <stdlib.h>
+
+/* What the diffuse term would have to be at an entry, and how much the entry counts. */
+struct wanted {
+	float kd, weight;
+};
+
+static int by_kd(const void *a, const void *b)
+{
+	const float x = ((const struct wanted *)a)->kd, y = ((const struct wanted *)b)->kd;
+	return (x > y) - (x < y);
+}
+
+static double weighted_median(struct wanted *wanted, size_t n)
+{
+	double all = 0, sum = 0;
+	qsort(wanted, n, sizeof *wanted, by_kd);
+	for (size_t i = 0; i < n; i++)
+		all += (double)wanted[i].weight;
+	for (size_t i = 0; i < n; i++) {
+		sum += (double)wanted[i].weight;
+		if (2 * sum >= all)
+			return (double)wanted[i].kd;
+	}
+	return 0;
+}
+
+/* The lobe and the weight at each entry that takes part, as lobe = kd in *wanted; at[] says which entries. */
+static size_t look(const struct samples *samples, const struct fit_options *fit, const struct cook_torrance *model,
+		   struct wanted *wanted, size_t *at)
+{
+	const struct entries entries = entries_make(fit->bins, samples->n_phi_d);
+	const double min_cos = max_theta_cos(fit->max_theta);
+	size_t n = 0, entry = 0;
+	for (int i = 0; i < SAMPLES_THETA_H; i++)
+		for (int j = 0; j < SAMPLES_THETA_D; j++)
+			for (int k = 0; k < samples->n_phi_d; k++, entry++) {
+				struct vec3 wi, wo;
+				if (isnan(samples->value[0][entry]))
+					continue;
+				entries_dirs(&entries, i, j, k, &wi, &wo);
+				if (!entry_in_range(wi, wo, min_cos))
+					continue;
+				wanted[n] = (struct wanted){(float)cook_torrance_lobe(model, wi, wo),
+							    (float)weight_at(fit->weight, i, j, wi.z, wo.z)};
+				at[n++] = entry;
+			}
+	return n;
+}
+
+enum status gray_specular(const struct samples *samples, const struct fit_options *fit, struct cook_torrance *model)
+{
+	const double ks = (model->ks[0] + model->ks[1] + model->ks[2]) / 3;
+	struct wanted *lobe = calloc(samples_count(samples), sizeof *lobe);
+	struct wanted *wanted = calloc(samples_count(samples), sizeof *wanted);
+	size_t *at = calloc(samples_count(samples), sizeof *at);
+	const bool ready = lobe && wanted && at;
+	const size_t n = ready ? look(samples, fit, model, lobe, at) : 0;
+	for (int c = 0; c < SAMPLES_CHANNELS && ready; c++) {
+		for (size_t i = 0; i < n; i++) {
+			const double rest = (double)samples->value[c][at[i]] - ks * (double)lobe[i].kd;
+			wanted[i] = (struct wanted){(float)(M_PI * rest), lobe[i].weight};
+		}
+		model->ks[c] = ks;
+		model->kd[c] = fmin(fmax(weighted_median(wanted, n), 0), fmax(1 - ks, 0));
+	}
+	free(lobe);
+	free(wanted);
+	free(at);
+	return ready ? STATUS_OK : STATUS_NO_MEMORY;
+}
