@@ -12,7 +12,7 @@
 
 #define LOBE "--kd 0.31,0.12,0.047 --ks 0.42,0.53,0.6"
 /* What has to be fitted is fitted to few entries. */
-#define SMALL "--max-theta 25 --threads 1"
+#define SMALL "--max-theta 12 --threads 1"
 
 static struct cook_torrance given(const char *ndf, double sigma, double gamma, double n)
 {
@@ -75,8 +75,8 @@ static double error_on(const struct cook_torrance *truth, const struct cook_torr
 	struct fit_metrics metrics;
 	struct error error = {""};
 
-	options.max_theta = 25;
-	assert_int_equal(model_table(truth, BINS_NODE, 180, 25, 1, &samples), STATUS_OK);
+	options.max_theta = 12;
+	assert_int_equal(model_table(truth, BINS_NODE, 180, 12, 1, &samples), STATUS_OK);
 	assert_int_equal(fit_eval(&samples, model, &options, &metrics, &error), STATUS_OK);
 	samples_free(&samples);
 	return metrics.error[WEIGHT_NONE];
@@ -405,14 +405,15 @@ static double gltf_error(const struct gltf *g, const struct cook_torrance *truth
 {
 	double difference = 0, sum = 0;
 
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		for (int j = 0; j < SAMPLES_THETA_D; j++)
+	/* Beyond theta_h, theta_d = 12 degrees one of the directions is. */
+	for (int i = 0; i * i <= 12 * 90; i++)
+		for (int j = 0; j <= 12; j++)
 			for (int k = 0; k < 180; k++) {
 				struct vec3 wi, wo;
 				double f[3], m[3];
 
 				halfdiff_trig_dirs(bins_trig(BINS_NODE, i, j, k), &wi, &wo);
-				if (!entry_in_range(wi, wo, max_theta_cos(25)))
+				if (!entry_in_range(wi, wo, max_theta_cos(12)))
 					continue;
 				gltf_f(g, wi, wo, f);
 				cook_torrance_f(truth, wi, wo, m);
@@ -606,9 +607,9 @@ static void from_a_fit_and_from_its_row(void **state)
 	(void)state;
 	stdfit("synth m.binary --kd 0.2,0.1,0.05 --ks 0.5 --sigma 0.2 --gamma 1.8 --noise 0.1 --threads 1");
 	expect_code(0);
-	stdfit("fit m.binary --ndf std,ggx --max-theta 25 --threads 1 -o fits.csv -q");
+	stdfit("fit m.binary --ndf std,ggx --max-theta 12 --threads 1 -o fits.csv -q");
 	expect_code(0);
-	export_it("m.binary --format json --ndf std --max-theta 25 --threads 1 -o fit.json");
+	export_it("m.binary --format json --ndf std --max-theta 12 --threads 1 -o fit.json");
 	export_it("m.binary --from fits.csv --ndf std --format json -o row.json");
 	char *fit = slurp("fit.json"), *row = slurp("row.json");
 	assert_string_equal(fit, row);

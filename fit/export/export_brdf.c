@@ -393,7 +393,7 @@ static void write_header(const struct export *export, FILE *file, const struct l
 	lines(&(struct glsl){.file = file}, "analytic\n");
 	export_comment(export, file, "# ", "");
 	if (table->n)
-		fprintf(file, "# Smith's Lambda is interpolated in a table of %d values; G1 is off by at most %.1e\n",
+		fprintf(file, "# Smith's Lambda is interpolated in a table of %d values; between them the error of G1 is at most %.1e\n",
 			table->n, table->G1_error);
 	fprintf(file, "\n::begin parameters\nbool diffuse 1\nbool specular 1\n::end parameters\n\n::begin shader\n\n");
 	fprintf(file, "const float MF_PI = 3.1415926535897932385;\n");
