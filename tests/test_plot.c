@@ -16,7 +16,7 @@
 
 /* A noisy table that several tests look at, and its model. */
 #define NOISE 0.2
-static struct samples table;
+static struct samples measured_table;
 static struct cook_torrance table_model;
 
 static bool have_gnuplot(void)
@@ -35,8 +35,8 @@ static void the_map_adds_up_to_the_error(void **state)
 {
 	(void)state;
 	static struct metrics_row rows[TABLE_ROWS];
-	for (int k = 0; k < table.n_phi_d; k++)
-		mask_entry(&table, 30, 20, k);
+	for (int k = 0; k < measured_table.n_phi_d; k++)
+		mask_entry(&measured_table, 30, 20, k);
 	for (int run = 0; run < 4; run++) {
 		struct fit_options options = fit_options_default();
 		struct cook_torrance model = make_model("std", 0.19, 2.385, 1.5);
@@ -49,8 +49,8 @@ static void the_map_adds_up_to_the_error(void **state)
 		struct error error;
 		double difference = 0, measured = 0;
 		size_t n = 0;
-		assert_int_equal(fit_eval(&table, &model, &options, &metrics, &error), STATUS_OK);
-		assert_int_equal(error_map_make(&table, &model, &options, rows), STATUS_OK);
+		assert_int_equal(fit_eval(&measured_table, &model, &options, &metrics, &error), STATUS_OK);
+		assert_int_equal(error_map_make(&measured_table, &model, &options, rows), STATUS_OK);
 		for (int r = 0; r < TABLE_ROWS; r++) {
 			difference += rows[r].difference;
 			measured += rows[r].measured;
@@ -77,12 +77,12 @@ static void a_row_of_the_map_is_what_the_model_says(void **state)
 		halfdiff_trig_dirs(bins_trig(BINS_NODE, I, J, k), &wi, &wo);
 		cook_torrance_f(&model, wi, wo, f);
 		for (int c = 0; c < 3 && wi.z > 1e-9 && wo.z > 1e-9; c++) {
-			const double m = (double)table.value[c][k + 180 * (J + SAMPLES_THETA_D * I)];
+			const double m = (double)measured_table.value[c][k + 180 * (J + SAMPLES_THETA_D * I)];
 			difference += fabs(m - f[c]);
 			measured += m;
 		}
 	}
-	assert_int_equal(error_map_make(&table, &model, &options, rows), STATUS_OK);
+	assert_int_equal(error_map_make(&measured_table, &model, &options, rows), STATUS_OK);
 	check_rel(error_map_error(&rows[I * SAMPLES_THETA_D + J]), difference / measured, 1e-7, "error of a row");
 	const struct metrics_row perfect = {0, 0, 3}, black = {2, 2, 3}, dark = {1, 0, 3};
 	check_abs(error_map_error(&perfect), 0, 0, "nothing measured, nothing modelled");
@@ -145,13 +145,13 @@ static void no_ndf_where_there_is_none(void **state)
 	struct samples samples;
 	for (int c = 0; c < 3; c++)
 		model.ks[c] = 0;
-	assert_int_equal(measured_ndf_make(&table, &model, BINS_NODE, &ndf), STATUS_NO_DATA);
+	assert_int_equal(measured_ndf_make(&measured_table, &model, BINS_NODE, &ndf), STATUS_NO_DATA);
 	/* Nothing is above the diffuse part. */
 	for (int c = 0; c < 3; c++) {
 		model.ks[c] = 1;
 		model.kd[c] = 1e6;
 	}
-	assert_int_equal(measured_ndf_make(&table, &model, BINS_NODE, &ndf), STATUS_NO_DATA);
+	assert_int_equal(measured_ndf_make(&measured_table, &model, BINS_NODE, &ndf), STATUS_NO_DATA);
 	assert_int_equal(samples_alloc(&samples, 180), STATUS_OK);
 	assert_int_equal(measured_ndf_make(&samples, &model, BINS_NODE, &ndf), STATUS_NO_DATA);
 	measured_ndf_free(&ndf);
@@ -163,15 +163,15 @@ static void slices_are_the_table(void **state)
 	(void)state;
 	double m[3], f[3];
 	for (int i = 0; i < 90; i += 11) {
-		slice_measured(&table, i, 45, m);
+		slice_measured(&measured_table, i, 45, m);
 		slice_model(&table_model, BINS_NODE, i, 45, f);
 		for (int c = 0; c < 3; c++)
 			check_rel(m[c], f[c], NOISE, "slice");
 	}
-	slice_measured(&table, 45, 0, m);
-	check_rel(m[1], (double)table.value[1][90 + 180 * 90 * 45], 0, "where a slice lies");
-	mask_entry(&table, 3, 45, 90);
-	slice_measured(&table, 3, 45, m);
+	slice_measured(&measured_table, 45, 0, m);
+	check_rel(m[1], (double)measured_table.value[1][90 + 180 * 90 * 45], 0, "where a slice lies");
+	mask_entry(&measured_table, 3, 45, 90);
+	slice_measured(&measured_table, 3, 45, m);
 	assert_true(isnan(m[0]) && isnan(m[2]));
 }
 
@@ -356,12 +356,13 @@ static void a_trace_becomes_a_picture(void **state)
 static void errors_are_sorted(void **state)
 {
 	(void)state;
-	shell("head -n 1 fits.csv >many.csv; r=$(sed -n 2p fits.csv | cut -d, -f4- | sed s,a.binary,gone,); for m in 'p,std,0.3' 'p,ggx,0.35' "
+	shell("head -n 1 fits.csv >many.csv; r=$(sed -n 2p fits.csv | cut -d, -f4- | sed s,a.binary,gone,); for m in "
+	      "'p,std,0.3' 'p,ggx,0.35' "
 	      "'q,std,0.1' 'q,ggx,0.5' 'r,std,0.2'; do echo \"$m,$r\" >>many.csv; done; "
 	      "PATH=/nowhere \"$STDFIT\" plot many.csv -o many");
 	expect_code(1);
 	char *text = slurp("many/errors.csv");
-	assert_string_equal(text, "material,std,ggx\n\"q\",0.1,0.5\n\"r\",0.2,\n\"p\",0.3,0.35\n");
+	assert_string_equal(text, "material,\"std\",\"ggx\"\n\"q\",0.1,0.5\n\"r\",0.2,\n\"p\",0.3,0.35\n");
 	free(text);
 }
 
@@ -397,7 +398,7 @@ static int set_up(void **state)
 	if (!enter_directory())
 		return -1;
 	table_model = make_model("ggx", 0.23, 2, 1.62);
-	table = make_table(&table_model, 180, BINS_NODE, NOISE);
+	measured_table = make_table(&table_model, 180, BINS_NODE, NOISE);
 	shell("\"$STDFIT\" synth a.binary --ndf ggx --sigma 0.2 --ior 1.5 --kd 0.3,0.2,0.1 --ks 0.5 && ln a.binary "
 	      "\"" ODD ".binary\" && \"$STDFIT\" fit *.binary -q -o fits.csv " CHEAP);
 	return last.code;
@@ -406,7 +407,7 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
 	(void)state;
-	samples_free(&table);
+	samples_free(&measured_table);
 	return leave_directory();
 }
 

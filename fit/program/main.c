@@ -77,6 +77,7 @@ static int dispatch(int argc, char **argv)
 		[COMMAND_MERGE] = cmd_merge, [COMMAND_EVAL] = cmd_eval,       [COMMAND_INFO] = cmd_info,
 		[COMMAND_SYNTH] = cmd_synth, [COMMAND_EXPORT] = cmd_export, [COMMAND_NDF] = cmd_ndf, [COMMAND_SAMPLE] = cmd_sample,
 		[COMMAND_PLOT] = cmd_plot,
+		[COMMAND_REPORT] = cmd_report,
 	};
 	const char *first = argc > 1 ? argv[1] : "";
 	if (!strcmp(first, "--version")) {

@@ -3,6 +3,7 @@
 #include "batch.h"
 #include "files.h"
 #include "merl.h"
+#include "store.h"
 #include "text_quote.h"
 
 #include <math.h>
@@ -51,10 +52,14 @@ static enum status sort_rows(struct csv_table *rows)
 	return STATUS_OK;
 }
 
-static bool is_plain(char c, bool first)
+/* A character of a name, or what stands for it in the name of a file. */
+static char plain(char c, bool first)
 {
-	const bool letter = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-	return letter || (!first && (c == '.' || c == '+' || c == '-'));
+	const bool letter = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+	const bool mark = !first && (c == '.' || c == '+' || c == '-');
+	if (letter || mark)
+		return c;
+	return '_';
 }
 
 /* Names that differ in what a file name cannot have, or only in case, are told apart by a number. */
@@ -65,7 +70,7 @@ static void name_files(struct materials *materials)
 		struct material *m = &materials->material[i];
 		size_t length = 0;
 		for (const char *c = m->name; *c && length < MATERIAL_FILE_NAME_SIZE - NUMBER_ROOM; c++, length++)
-			m->file_name[length] = is_plain(*c, length == 0) ? *c : '_';
+			m->file_name[length] = plain(*c, length == 0);
 		if (length == 0)
 			m->file_name[length++] = '_';
 		for (size_t k = 0, number = 1; k < i; k++) {
@@ -80,6 +85,7 @@ static void name_files(struct materials *materials)
 static enum status group_rows(struct materials *materials)
 {
 	const struct csv_table *rows = &materials->rows;
+	materials->n = 0;
 	materials->material = calloc(rows->n_rows + 1, sizeof(*materials->material));
 	if (!materials->material)
 		return STATUS_NO_MEMORY;
@@ -141,17 +147,33 @@ static int fit_rows(struct csv_table *rows, const struct options *options)
 	return code == EXIT_DONE && bad ? EXIT_FAILED : code;
 }
 
+/* Keeps what has been fitted, in DIR/fits.csv. */
+static enum status keep_rows(const struct csv_table *rows, const char *directory, struct error *error)
+{
+	char *path;
+	if (asprintf(&path, "%s/fits.csv", directory) < 0)
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	const enum status status = store_write(path, rows, report_csv, error);
+	free(path);
+	return status;
+}
+
 int materials_collect(struct materials *materials, const struct options *options)
 {
 	bool table = false;
 	*materials = (struct materials){.rows = csv_table_make(result_columns, RESULT_COLUMNS)};
 	for (int i = 0; i < options->n_paths; i++)
 		table |= csv_is_name(options->path[i]);
-	const int code = (table ? read_rows : fit_rows)(&materials->rows, options);
+	int code = (table ? read_rows : fit_rows)(&materials->rows, options);
 	if (sort_rows(&materials->rows) || group_rows(materials)) {
 		report_error("out of memory");
 		materials_free(materials);
 		return EXIT_FAILED;
+	}
+	struct error error;
+	if (!table && materials->n && keep_rows(&materials->rows, options->output, &error)) {
+		report_error("%s", error.text);
+		code = code == EXIT_DONE ? EXIT_FAILED : code;
 	}
 	return code;
 }

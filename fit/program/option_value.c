@@ -20,7 +20,9 @@
 #define NDF (1u << COMMAND_NDF)
 #define SAMPLE (1u << COMMAND_SAMPLE)
 #define PLOT (1u << COMMAND_PLOT)
-#define FITS (FIT | COMPARE | PLOT)
+#define REPORT (1u << COMMAND_REPORT)
+#define DRAWS (PLOT | REPORT)
+#define FITS (FIT | COMPARE | DRAWS)
 #define SEARCHES (FITS | BENCH)
 #define TABLES (FIT | COMPARE | BENCH)
 #define MODEL (EVAL | SYNTH)
@@ -35,7 +37,7 @@ const struct option_spec option_specs[] = {
 	 "write the table there; an older FILE becomes FILE~", AT(output), 0, 0},
 	{"output", 'o', KIND_TEXT, EXPORT, NOT_RECORDED, "FILE", "write it there, not to standard output", AT(output), 0, 0},
 	{"format", 0, KIND_FORMAT, EXPORT, NOT_RECORDED, "NAME", "what to write", AT(format), 0, 0},
-	{"output", 'o', KIND_TEXT, PLOT, NOT_RECORDED, "DIR", "the directory to write to; made if it is not there",
+	{"output", 'o', KIND_TEXT, DRAWS, NOT_RECORDED, "DIR", "the directory to write to; made if it is not there",
 	 AT(output), 0, 0},
 	{"json", 0, KIND_ON, TABLES | MERGE | EVAL | INFO | NDF | SAMPLE, NOT_RECORDED, NULL, "JSON instead of CSV", AT(json), 0, 0},
 	{"table", 0, KIND_ON, TABLES | MERGE | EVAL | INFO | NDF | SAMPLE, NOT_RECORDED, NULL,

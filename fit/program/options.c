@@ -71,6 +71,10 @@ static const struct command_text commands[COMMAND_COUNT] = {
 			  "NDF read off the data, slices, measured against fitted, and the error over theta_h and\n"
 			  "theta_d: each as PNG, SVG, CSV and the script that draws it. Of a trace (see fit --trace) it\n"
 			  "draws the error against time.\n"},
+	[COMMAND_REPORT] = {"report", "PATH...", "fits as one HTML page that needs no other file",
+			    "Takes a result table (FILE.csv), or fits MERL files or directories. Writes index.html into the\n"
+			    "directory of -o: a summary, a table that can be sorted, and per material its plots (see\n"
+			    "stdfit plot), parameters, their certainty, options and versions.\n"},
 };
 
 const struct command_text *options_command(enum command command)

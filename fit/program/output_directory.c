@@ -2,6 +2,7 @@
 #include "output_directory.h"
 #include "text_quote.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,4 +40,33 @@ enum status output_directory_make(const char *path, const char *below, char **ma
 	free(whole);
 	return errnum ? error_set(error, STATUS_IO, "cannot write to directory '%s': %s", name, strerror(errnum))
 		      : STATUS_OK;
+}
+
+enum status scratch_make(const char *path, char **scratch, struct error *error)
+{
+	*scratch = NULL;
+	if (asprintf(scratch, "%s/.stdfit-XXXXXX", path) < 0) {
+		*scratch = NULL;
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	}
+	if (mkdtemp(*scratch))
+		return STATUS_OK;
+	char name[TEXT_QUOTE_SIZE];
+	const int errnum = errno;
+	text_quote(path, name, sizeof name);
+	free(*scratch);
+	*scratch = NULL;
+	return error_set(error, STATUS_IO, "cannot write to directory '%s': %s", name, strerror(errnum));
+}
+
+void scratch_remove(char *scratch)
+{
+	DIR *directory = scratch ? opendir(scratch) : NULL;
+	for (struct dirent *entry; directory && (entry = readdir(directory));)
+		unlinkat(dirfd(directory), entry->d_name, 0);
+	if (directory)
+		closedir(directory);
+	if (scratch)
+		rmdir(scratch);
+	free(scratch);
 }

@@ -57,6 +57,11 @@ void plot_range_add(struct plot_range *range, double x)
 void plot_log_range(FILE *file, const struct plot_range *range, double below, double above)
 {
 	const bool known = range->high > 0;
-	fprintf(file, "set logscale y\nset mytics 1\nset format y \"10^{%%T}\"\nset yrange [%.3g:%.3g]\n",
-		known ? range->low / below : 1e-3, known ? range->high * above : 1e3);
+	const double low = known ? range->low / below : 1e-3, high = known ? range->high * above : 1e3;
+	const double decades = log10(high / low);
+	fprintf(file, "set logscale y\nset mytics 1\nset format y \"10^{%%T}\"\nset yrange [%.3g:%.3g]\nset ytics %g\n",
+		low, high,
+		decades <= 5    ? 10.0
+		: decades <= 10 ? 100.0
+				: 1000.0);
 }

@@ -44,12 +44,12 @@ static void put_theta_h_axis(FILE *file)
 	      file);
 }
 
-static void put_grid(FILE *file, int n, int columns, const char *what, const char *material)
+static void put_grid(FILE *file, int n, int columns, const char *margins, const char *what, const char *material)
 {
 	char title[TEXT_QUOTE_SIZE + 64], shown[TEXT_QUOTE_SIZE];
 	text_quote(material, shown, sizeof shown);
 	snprintf(title, sizeof title, "%s: %s", shown, what);
-	fprintf(file, "set multiplot layout %d,%d title ", (n + columns - 1) / columns, columns);
+	fprintf(file, "set multiplot layout %d,%d %s title ", (n + columns - 1) / columns, columns, margins);
 	gnuplot_string(file, title);
 	fputs(" noenhanced\n", file);
 }
@@ -150,7 +150,8 @@ static void put_D_panel(FILE *file, const struct material_data *data, int f)
 static void put_G1_panel(FILE *file, const struct material_data *data)
 {
 	fputs("set title \"G_1; dashed: of the D read off the data\" enhanced\n"
-	      "unset logscale y\nset format y \"%g\"\nset yrange [0:1.05]\nunset nonlinear x\nset xtics 15\n"
+	      "unset logscale y\nset ytics 0.2\nset format y \"%g\"\nset yrange [0:1.05]\nunset nonlinear x\nset xtics "
+	      "15\n"
 	      "set xlabel \"θ (degrees)\"\nset ylabel \"\"\nset key left bottom\nplot ",
 	      file);
 	for (int f = 0; f < data->n; f++) {
@@ -172,7 +173,7 @@ static enum status write_ndf_script(const char *directory, const struct material
 	if (status)
 		return status;
 	gnuplot_begin(file.stream, "ndf", columns * 450, 40 + (n + columns - 1) / columns * PANEL_HEIGHT);
-	put_grid(file.stream, n, columns,
+	put_grid(file.stream, n, columns, "",
 		 "D of each fit, and as that fit reads it off the data at small difference angles", data->name);
 	put_theta_h_axis(file.stream);
 	plot_log_range(file.stream, range, 100, 10);
@@ -252,8 +253,12 @@ static enum status write_slices(const char *directory, const struct material_dat
 static void put_slice_panel(FILE *file, const struct material_data *data, int s)
 {
 	const int from = 1 + s * SAMPLES_THETA_H, to = from + SAMPLES_THETA_H - 1;
-	fprintf(file, "set title \"θ_d = %g°\"\n%s\nset ylabel \"%s\"\n", theta_d_deg(bins_of(data), slice_theta_d[s]),
-		s == 0 ? "set key right top" : "unset key", s % 3 == 0 ? "BRDF (1/sr)" : "");
+	const bool left = s % 3 == 0, bottom = s >= SLICES - 3;
+	fprintf(file, "set title \"θ_d = %g°\"\n%s\n", theta_d_deg(bins_of(data), slice_theta_d[s]),
+		s == 0 ? "set key right top" : "unset key");
+	/* All panels have the same axes. */
+	fprintf(file, "set ylabel \"%s\"\nset format y \"%s\"\n", left ? "BRDF (1/sr)" : "", left ? "10^{%T}" : "");
+	fprintf(file, "set xlabel \"%s\"\nset format x \"%s\"\n", bottom ? "θ_h (degrees)" : "", bottom ? "%g" : "");
 	fprintf(file,
 		"plot \"slices.csv\" every ::%d::%d using 2:%d with lines lw 5 lc rgb \"#c0c0c0\" title \"measured\"",
 		from, to, SLICE_MEAN);
@@ -275,7 +280,7 @@ enum status plot_slices(const char *directory, const struct material_data *data,
 	if (status)
 		return status;
 	gnuplot_begin(file.stream, "slices", 3 * PANEL_WIDTH, 40 + 2 * PANEL_HEIGHT);
-	put_grid(file.stream, SLICES, 3,
+	put_grid(file.stream, SLICES, 3, "margins 0.07,0.98,0.1,0.88 spacing 0.03,0.12",
 		 "measured and fitted at right angles to the mirror plane (φd = 90°), mean of the channels",
 		 data->name);
 	put_theta_h_axis(file.stream);
@@ -366,7 +371,7 @@ static enum status write_map_script(const char *directory, const struct material
 	if (status)
 		return status;
 	gnuplot_begin(file.stream, "map", width, height);
-	put_grid(file.stream, data->n, columns,
+	put_grid(file.stream, data->n, columns, "",
 		 "where each fit errs, over half and difference angle (gray: nothing measured)", data->name);
 	fprintf(file.stream,
 		"set margins 0,0,0,0\n%sset logscale cb\nset cbrange [0.03:10]\nset cblabel \"Σ|m − f| / Σm of the "

@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `stdfit report`: text and files inside a page, the page as text, and in a browser where one is installed. Runs $STDFIT
+ * or build/stdfit. */
+#include "html.h"
+#include "run_program.h"
+
+/* A fit that takes a moment. */
+#define CHEAP "--ndf ggx,beckmann --sigma 0.2 --ior 1.5 --max-theta 20"
+/* A material's name that is markup, and no UTF-8. */
+#define ODD "<i>&\\\"'\\`\xff\xc3\xa9</h3><script>alert(1)</script>"
+
+static char *browser_script;
+
+static bool have_gnuplot(void)
+{
+	return system("command -v gnuplot >/dev/null") == 0;
+}
+
+static void any_text_is_text(void **state)
+{
+	(void)state;
+	char *text = NULL;
+	size_t size;
+	FILE *file = open_memstream(&text, &size);
+	html_text(file, "a<b>&\"c'\n\x1b\xff\xc3\xa9");
+	assert_int_equal(fclose(file), 0);
+	assert_string_equal(text, "a&#60;b&#62;&#38;&#34;c&#39;\\x0a\\x1b\\xff\xc3\xa9");
+	free(text);
+}
+
+/* RFC 4648, section 10, and bytes that are no text. */
+static void files_become_base64(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *bytes, *coded;
+		size_t n;
+	} vector[] = {{"", "", 0},
+		      {"f", "Zg==", 1},
+		      {"fo", "Zm8=", 2},
+		      {"foo", "Zm9v", 3},
+		      {"foob", "Zm9vYg==", 4},
+		      {"fooba", "Zm9vYmE=", 5},
+		      {"foobar", "Zm9vYmFy", 6},
+		      {"\0\xff\xfe\xfb", "AP/++w==", 4}};
+	struct error error;
+	for (size_t v = 0; v < sizeof vector / sizeof *vector; v++) {
+		char *text = NULL, *expected;
+		size_t size;
+		FILE *file = fopen("bytes", "wb"), *page = open_memstream(&text, &size);
+		fwrite(vector[v].bytes, 1, vector[v].n, file);
+		assert_int_equal(fclose(file), 0);
+		assert_int_equal(html_file(page, "bytes", "image/png", &error), STATUS_OK);
+		assert_int_equal(fclose(page), 0);
+		assert_true(asprintf(&expected, "data:image/png;base64,%s", vector[v].coded) > 0);
+		assert_string_equal(text, expected);
+		free(expected);
+		free(text);
+	}
+	assert_int_equal(html_file(stdout, "none", "image/png", &error), STATUS_IO);
+	assert_non_null(strstr(error.text, "cannot read 'none'"));
+}
+
+static void expect_nothing_left(void)
+{
+	shell("find . -name '.stdfit*'");
+	assert_string_equal(last.out, "");
+}
+
+static void expect_in_page(const char *path, const char *part, bool there)
+{
+	char *page = slurp(path);
+	if ((strstr(page, part) != NULL) != there)
+		fail_msg("%s: '%s' is %s", path, part, there ? "missing" : "there");
+	free(page);
+}
+
+/* Elements that stand in pairs do so, and the page is whole. */
+static void expect_whole(const char *path)
+{
+	static const char *const pair[] = {"details", "table", "tr",  "td",     "th",
+					   "figure",  "h3",    "div", "script", "span"};
+	char *page = slurp(path);
+	for (size_t p = 0; p < sizeof pair / sizeof *pair; p++) {
+		char opening[16], closing[16];
+		int difference = 0, n = 0;
+		snprintf(opening, sizeof opening, "<%s", pair[p]);
+		snprintf(closing, sizeof closing, "</%s>", pair[p]);
+		for (const char *at = page; (at = strstr(at, opening)); at++) {
+			const bool element = strchr(" >\n", at[strlen(opening)]);
+			difference += element;
+			n += element;
+		}
+		for (const char *at = page; (at = strstr(at, closing)); at++)
+			difference--;
+		assert_int_equal(difference, 0);
+		if (n == 0 && strcmp(pair[p], "figure"))
+			fail_msg("%s has no %s", path, pair[p]);
+	}
+	const size_t length = strlen(page);
+	assert_true(length > 8 && !strcmp(page + length - 8, "</html>\n"));
+	free(page);
+}
+
+static void a_table_becomes_a_page(void **state)
+{
+	(void)state;
+	if (!have_gnuplot())
+		skip();
+	stdfit("report odd.csv -o odd");
+	expect_code(0);
+	assert_string_equal(last.out, "");
+	expect_nothing_left();
+	const char *page = "odd/index.html";
+	expect_whole(page);
+	expect_in_page(page, "<meta name=\"viewport\"", true);
+	expect_in_page(page, "<title>stdfit: fits of 3 materials</title>", true);
+	expect_in_page(page, "src=\"data:image/svg+xml;base64,", true);
+	expect_in_page(page, "src=\"data:image/png;base64,", true);
+	/* Names are text, wherever they stand. */
+	expect_in_page(page, "<i>", false);
+	expect_in_page(page, "<script>alert", false);
+	expect_in_page(page, "&#60;i&#62;&#38;&#34;&#39;&#96;\\xff", false); /* ` needs no escape */
+	expect_in_page(page, "&#60;i&#62;&#38;&#34;&#39;`\\xff\xc3\xa9&#60;/h3&#62;", true);
+	/* Nothing is to be fetched. */
+	expect_in_page(page, "http:", false);
+	expect_in_page(page, "https:", false);
+	expect_in_page(page, "gaf=uncorrelated", true);
+	expect_in_page(page, "fitted by stdfit</dt><dd>" STDFIT_VERSION, true);
+	expect_in_page(page, "Pictures are missing", false);
+}
+
+static void in_a_browser(void **state)
+{
+	(void)state;
+	if (!have_gnuplot() || access("odd/index.html", F_OK))
+		skip();
+	char *command;
+	assert_true(asprintf(&command, "timeout 120 '%s' odd/index.html", browser_script) > 0);
+	shell(command);
+	free(command);
+	if (last.code == 77) {
+		print_message("chromium, chromedriver or curl is not installed\n");
+		skip();
+	}
+	assert_string_equal(last.err, "");
+	expect_code(0);
+}
+
+/* Fitted or read, the same rows make the same page; what was fitted is kept. */
+static void files_are_fitted_first(void **state)
+{
+	(void)state;
+	if (!have_gnuplot())
+		skip();
+	stdfit("report a.binary -q -o new " CHEAP);
+	expect_code(0);
+	stdfit("report new/fits.csv -o again");
+	expect_code(0);
+	shell("cmp new/index.html again/index.html");
+	expect_code(0);
+	expect_whole("new/index.html");
+	expect_in_page("new/index.html", "<title>stdfit: fits of a</title>", true);
+}
+
+static void without_gnuplot(void **state)
+{
+	(void)state;
+	shell("PATH=/nowhere exec \"$STDFIT\" report fits.csv -o bare");
+	expect_error(0, "gnuplot is not installed (on Debian: apt install gnuplot-nox): the page has no plots");
+	expect_whole("bare/index.html");
+	expect_in_page("bare/index.html", "Pictures are missing: gnuplot is not installed", true);
+	expect_in_page("bare/index.html", "<td class=\"n\"", true);
+	expect_nothing_left();
+}
+
+/* A file that is gone, a fit that failed: told, on the page too, and the rest is there. */
+static void what_is_missing_is_told(void **state)
+{
+	(void)state;
+	shell("{ cat fits.csv; sed 1d fits.csv | sed 's/^a,/gone,/; s/a\\.binary/gone.binary/'; sed 1d fits.csv | sed "
+	      "'s/^a,\\([^,]*\\),[^,]*,/failed,\\1,,/; s/converged/failed: <b>reason/'; } >three.csv");
+	shell("PATH=/nowhere exec \"$STDFIT\" report three.csv -o three");
+	expect_code(1);
+	assert_int_equal(count_lines(last.err), 3);
+	assert_non_null(strstr(last.err, "cannot read 'gone.binary'"));
+	assert_non_null(strstr(last.err, "cannot show 'failed': it has no fit"));
+	expect_whole("three/index.html");
+	expect_in_page("three/index.html", "Pictures are missing: cannot read &#39;gone.binary&#39;", true);
+	expect_in_page("three/index.html", "failed: &#60;b&#62;reason", true);
+	expect_in_page("three/index.html", "no fit</span>", true);
+}
+
+static void wrong_input(void **state)
+{
+	(void)state;
+	write_text("other.csv", "name,value\nx,1\n");
+	shell("touch file; mkdir -p taken/index.html");
+	static const struct {
+		const char *arguments, *message;
+		int code;
+	} wrong[] = {
+		{"report fits.csv", "expected -o DIR", 2},
+		{"report -o out", "expected PATH", 2},
+		{"report fits.csv -o x --gaf correlated", "--gaf means nothing", 2},
+		{"report other.csv -o x", "'other.csv' line 1: expected a header with column material", 1},
+		{"report none.csv -o x", "cannot read 'none.csv'", 1},
+		{"report fits.csv -o file", "cannot write to directory 'file': Not a directory", 1},
+		{"report fits.csv -o no/such", "cannot write to directory 'no/such'", 1},
+		{"report fits.csv -o taken", "cannot write 'taken/index.html'", 1},
+	};
+	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+		stdfit(wrong[i].arguments);
+		expect_error(wrong[i].code, wrong[i].message);
+		assert_string_equal(last.out, "");
+	}
+	expect_nothing_left();
+}
+
+static void an_interrupt_leaves_the_old_page(void **state)
+{
+	(void)state;
+	write_text("gnuplot", "#!/bin/sh\ntouch ../../begun\nexec sleep 100\n");
+	shell("mkdir -p slow held; chmod +x gnuplot; mv gnuplot slow; echo old >held/index.html; PATH=$PWD/slow:$PATH "
+	      "\"$STDFIT\" report fits.csv -o held & pid=$!; until [ -e begun ]; do sleep 0.02; kill -0 $pid || exit "
+	      "1; "
+	      "done; kill -INT $pid; wait $pid");
+	expect_code(130);
+	assert_string_equal(last.err, "");
+	expect_in_page("held/index.html", "old", true);
+	expect_nothing_left();
+}
+
+static int set_up(void **state)
+{
+	(void)state;
+	browser_script = realpath("tests/browser.sh", NULL);
+	if (!browser_script || !enter_directory())
+		return -1;
+	/* Three materials of one file. */
+	shell("\"$STDFIT\" synth a.binary --ndf ggx --sigma 0.2 --ior 1.5 --kd 0.3,0.2,0.1 --ks 0.5 && \"$STDFIT\" fit "
+	      "a.binary -q -o fits.csv " CHEAP);
+	if (last.code)
+		return last.code;
+	shell("odd=\"" ODD "\"; { cat fits.csv; sed 1d fits.csv | sed 's/^a,\\([^,]*\\),[^,]*,/b-with-a-long-name-"
+	      "that-does-not-end-where-a-telephone-does,\\1,0.125,/'; sed 1d fits.csv | while read -r row; do printf "
+	      "'\"%s\",%s\\n' \"$(printf %s \"$odd\" | sed 's/\"/\"\"/g')\" \"$(printf %s \"$row\" | sed "
+	      "'s/^a,\\([^,]*\\),[^,]*,/\\1,0.25,/')\"; done; } >odd.csv");
+	return last.code;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	free(browser_script);
+	return leave_directory();
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(any_text_is_text),
+		cmocka_unit_test(files_become_base64),
+		cmocka_unit_test(a_table_becomes_a_page),
+		cmocka_unit_test(in_a_browser),
+		cmocka_unit_test(files_are_fitted_first),
+		cmocka_unit_test(without_gnuplot),
+		cmocka_unit_test(what_is_missing_is_told),
+		cmocka_unit_test(wrong_input),
+		cmocka_unit_test(an_interrupt_leaves_the_old_page),
+	};
+	return cmocka_run_group_tests_name("report", tests, set_up, tear_down);
+}
