@@ -188,6 +188,11 @@ static void mitsuba_says_what_it_can(void **state)
 	expect_mitsuba("--format mitsuba " LOBE
 		       " --ndf std --gamma 2 --sigma 0.23 --ior 1.61 --k 3.25 --fresnel conductor",
 		       "exact: ", model);
+	/* GGX under other names. */
+	model = given("gtr", 0.3, 2, 1.5);
+	expect_mitsuba("--format mitsuba " LOBE " --ndf gtr --gamma 2 --sigma 0.3", "exact: ", model);
+	model = given("hyper-cauchy", 0.3, 2, 1.5);
+	expect_mitsuba("--format mitsuba " LOBE " --ndf hyper-cauchy --gamma 2 --sigma 0.3", "exact: ", model);
 	model = given("beckmann", 0.5, INFINITY, 1.5);
 	expect_mitsuba("--format mitsuba " LOBE " --ndf std --gamma inf --sigma 0.5", "approximate: the model itself",
 		       model);
@@ -600,6 +605,39 @@ static void bad_json_is_told(void **state)
 	}
 }
 
+/* Every prefix, and bytes changed at random: read or refused, never a crash. */
+static void damaged_json_is_read_or_refused(void **state)
+{
+	struct fit_options fit = fit_options_default();
+	struct model_json read;
+	struct error error;
+	unsigned seed = 5;
+	size_t refused = 0;
+
+	(void)state;
+	export_it("--format json -o good.json " LOBE " --sigma 0.2 --gamma 1.7");
+	char *good = slurp("good.json");
+	const size_t length = strlen(good);
+	for (size_t i = 0; i < 2 * length; i += 5) {
+		char *text = strdup(good);
+		if (i < length)
+			text[i] = '\0';
+		else
+			for (int k = 0; k < 3; k++)
+				text[(size_t)(random_unit(&seed) * (double)length)] =
+					(char)(1 + 254 * random_unit(&seed));
+		write_text("damaged.json", text);
+		free(text);
+		const enum status status = model_json_read("damaged.json", &read, &fit, &error);
+		assert_true(status == STATUS_OK || status == STATUS_FORMAT);
+		refused += status != STATUS_OK;
+		if (!status)
+			model_json_free(&read);
+	}
+	assert_true(refused >= length / 5 - 1);
+	free(good);
+}
+
 /* From a file and from a table */
 
 static void from_a_fit_and_from_its_row(void **state)
@@ -701,12 +739,19 @@ static int tear_down(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(mitsuba_says_what_it_can),    cmocka_unit_test(mitsuba_gets_a_stand_in),
-		cmocka_unit_test(mitsuba_blends_within_one),   cmocka_unit_test(xmllint_takes_it),
-		cmocka_unit_test(pbrt_says_what_it_can),       cmocka_unit_test(gltf_tells_its_error),
-		cmocka_unit_test(merl_is_the_model),           cmocka_unit_test(json_is_the_model),
-		cmocka_unit_test(json_of_a_table_of_nodes),    cmocka_unit_test(bad_json_is_told),
-		cmocka_unit_test(from_a_fit_and_from_its_row), cmocka_unit_test(refusals_are_one_line),
+		cmocka_unit_test(mitsuba_says_what_it_can),
+		cmocka_unit_test(mitsuba_gets_a_stand_in),
+		cmocka_unit_test(mitsuba_blends_within_one),
+		cmocka_unit_test(xmllint_takes_it),
+		cmocka_unit_test(pbrt_says_what_it_can),
+		cmocka_unit_test(gltf_tells_its_error),
+		cmocka_unit_test(merl_is_the_model),
+		cmocka_unit_test(json_is_the_model),
+		cmocka_unit_test(json_of_a_table_of_nodes),
+		cmocka_unit_test(bad_json_is_told),
+		cmocka_unit_test(damaged_json_is_read_or_refused),
+		cmocka_unit_test(from_a_fit_and_from_its_row),
+		cmocka_unit_test(refusals_are_one_line),
 	};
 
 	return cmocka_run_group_tests(tests, set_up, tear_down);
