@@ -625,7 +625,7 @@ static void damaged_json_is_read_or_refused(void **state)
 		else
 			for (int k = 0; k < 3; k++)
 				text[(size_t)(random_unit(&seed) * (double)length)] =
-					(char)(1 + 254 * random_unit(&seed));
+					(char)(unsigned char)(1 + 254 * random_unit(&seed));
 		write_text("damaged.json", text);
 		free(text);
 		const enum status status = model_json_read("damaged.json", &read, &fit, &error);
