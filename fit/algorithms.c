@@ -214,7 +214,8 @@ static bool set_up_nlopt(struct run *r, nlopt_opt opt, const double x[])
 	nlopt_set_min_objective(opt, evaluate, r);
 	nlopt_set_lower_bounds(opt, r->lo);
 	nlopt_set_upper_bounds(opt, r->hi);
-	nlopt_set_initial_step(opt, step);
+	if (nlopt_set_initial_step(opt, step) < 0)
+		return false;
 	nlopt_set_maxtime(opt, fmax(time_left(r), 1e-3));
 	if (r->algorithm->local) {
 		nlopt_set_ftol_rel(opt, 1e-5);

@@ -418,11 +418,13 @@ static enum status refine(struct search *s, struct objective *o, const struct st
 	nlopt_set_min_objective(opt, local_eval, &local);
 	nlopt_set_lower_bounds(opt, s->lo);
 	nlopt_set_upper_bounds(opt, s->hi);
-	nlopt_set_initial_step(opt, first);
 	nlopt_set_ftol_rel(opt, stage->tolerance);
 	nlopt_set_xtol_rel(opt, 1e-5);
 	nlopt_set_maxeval(opt, stage->evaluations);
-	const nlopt_result result = nlopt_optimize(opt, x, &error);
+	/* nlopt keeps the steps in memory that it asks for now; without them it would take others. */
+	nlopt_result result = nlopt_set_initial_step(opt, first);
+	if (result >= 0)
+		result = nlopt_optimize(opt, x, &error);
 
 	/* Stopped with the error still falling; 1e-5 is no matter for an E near 0. */
 	*limited = result == NLOPT_MAXEVAL_REACHED && local.best.error < (1 - 1e-4) * local.first - 1e-5;

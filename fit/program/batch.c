@@ -36,6 +36,7 @@ enum status batch_init(struct batch *batch, const struct options *options, const
 	*batch = (struct batch){.options = options, .options_text = text, .n = files->n};
 	batch->file = calloc(files->n + 1, sizeof(*batch->file));
 	if (!batch->file || !text) {
+		report_error("out of memory");
 		batch_free(batch);
 		return STATUS_NO_MEMORY;
 	}

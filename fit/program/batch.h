@@ -31,7 +31,8 @@ struct batch {
 	void *user;
 };
 
-/* batch_init - prepares the files of a command; batch_free releases them and their rows. STATUS_NO_MEMORY. */
+/* batch_init - prepares the files of a command; batch_free releases them and their rows. STATUS_NO_MEMORY,
+ * told on standard error. */
 MUST_CHECK enum status batch_init(struct batch *batch, const struct options *options, const struct files *files);
 void batch_free(struct batch *batch);
 

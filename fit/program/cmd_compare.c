@@ -271,13 +271,16 @@ static int compare_fits(const struct options *options)
 	struct batch batch;
 	struct error error = {""};
 	struct csv_table rows = csv_table_make(result_columns, RESULT_COLUMNS);
-	const int bad = files_collect(&files, options->path, options->n_paths, options->recursive);
-	if (bad < 0 || batch_init(&batch, options, &files)) {
+	const int bad = files_collect(&files, options->path, options->n_paths, options->recursive, options->cancel);
+	const bool replaces = bad >= 0 && options->output && files_has(&files, options->output);
+	if (replaces)
+		options_usage(COMMAND_COMPARE, "--output names a file that is to be read");
+	if (bad < 0 || replaces || batch_init(&batch, options, &files)) {
 		files_free(&files);
-		return EXIT_FAILED;
+		return replaces ? EXIT_USAGE : EXIT_FAILED;
 	}
 	enum status status = options->output ? store_probe(options->output, &error) : STATUS_OK;
-	int code = files.n && !status ? batch_run(&batch) : EXIT_FAILED;
+	int code = *options->cancel ? EXIT_INTERRUPTED : files.n && !status ? batch_run(&batch) : EXIT_FAILED;
 	for (size_t i = 0; i < batch.n && !status; i++)
 		if (csv_table_move(&rows, &batch.file[i].rows))
 			status = error_set(&error, STATUS_NO_MEMORY, "out of memory");

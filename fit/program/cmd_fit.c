@@ -147,8 +147,8 @@ static int run_traced(struct sink *sink, struct batch *batch)
 	return code == EXIT_DONE ? EXIT_FAILED : code;
 }
 
-/* As files_collect(), and of these the share that was asked for. Where something is not there (a disk that is not
- * mounted), the list and so the shares would not be those that the others fit: then there are none. */
+/* As files_collect(). Where something is not there (a disk that is not mounted), the list and so the shares would not be
+ * those that the others fit: then there are none. */
 static int collect(const struct options *options, struct files *files)
 {
 	const bool sharing = options->shard.n > 0;
@@ -163,12 +163,21 @@ static int collect(const struct options *options, struct files *files)
 		}
 	if (missing)
 		return missing;
-	const int bad = files_collect(files, options->path, options->n_paths, options->recursive);
+	const int bad = files_collect(files, options->path, options->n_paths, options->recursive, options->cancel);
 	if (sharing && bad > 0)
 		files_free(files);
-	if (sharing && !bad)
-		files_keep_shard(files, options->shard);
 	return bad;
+}
+
+/* An output takes the place of an older file, but not that of an input. Returns -1 or EXIT_USAGE. */
+static int check_outputs(const struct options *options, const struct files *files)
+{
+	const char *const output[] = {options->output, options->trace};
+	for (size_t i = 0; i < sizeof output / sizeof *output; i++)
+		if (output[i] && files_has(files, output[i]))
+			return options_usage(COMMAND_FIT, "--%s names a file that is to be read",
+					     i ? "trace" : "output");
+	return -1;
 }
 
 int cmd_fit(int argc, char **argv, atomic_bool *cancel)
@@ -180,9 +189,12 @@ int cmd_fit(int argc, char **argv, atomic_bool *cancel)
 	struct files files;
 	const int bad = collect(&options, &files);
 	struct batch batch;
-	if (bad < 0 || batch_init(&batch, &options, &files)) {
+	code = bad < 0 ? EXIT_FAILED : check_outputs(&options, &files);
+	if (options.shard.n && !bad)
+		files_keep_shard(&files, options.shard);
+	if (code >= 0 || batch_init(&batch, &options, &files)) {
 		files_free(&files);
-		return EXIT_FAILED;
+		return code >= 0 ? code : EXIT_FAILED;
 	}
 	struct sink sink = {.options = &options,
 			    .batch = &batch,
@@ -190,7 +202,10 @@ int cmd_fit(int argc, char **argv, atomic_bool *cancel)
 			    .stored = options.output && !options.json,
 			    .rows = csv_table_make(result_columns, RESULT_COLUMNS)};
 	const bool nothing = !files.n && (bad || !options.shard.n);
-	code = nothing ? EXIT_FAILED : options.trace ? run_traced(&sink, &batch) : run(&sink, &batch);
+	code = *cancel         ? EXIT_INTERRUPTED
+	       : nothing       ? EXIT_FAILED
+	       : options.trace ? run_traced(&sink, &batch)
+			       : run(&sink, &batch);
 	csv_table_free(&sink.rows);
 	if (sink.stored)
 		store_close(&sink.store);

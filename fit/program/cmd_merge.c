@@ -329,7 +329,7 @@ int cmd_merge(int argc, char **argv, atomic_bool *cancel)
 		return options_usage(COMMAND_MERGE, "expected tables FILE.csv, found none");
 	if (options.recursive && !n_files)
 		return options_usage(COMMAND_MERGE, "--recursive means nothing without files or directories");
-	if (n_files && files_collect(&files, options.path + m.n_paths, n_files, options.recursive)) {
+	if (n_files && files_collect(&files, options.path + m.n_paths, n_files, options.recursive, cancel)) {
 		files_free(&files);
 		return EXIT_FAILED;
 	}

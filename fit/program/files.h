@@ -3,6 +3,7 @@
 #ifndef FILES_H
 #define FILES_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -12,10 +13,17 @@ struct files {
 };
 
 /* files_collect - takes every path that is no directory as it is, and for a directory its *.binary in the order of
- * their names; `recursive` takes those below it too, each directory once. Hidden files and directories are left alone.
- * Returns how many of the paths gave nothing, each told on standard error; -1 when out of memory, told as well. */
-int files_collect(struct files *files, char *const *path, int n_paths, bool recursive);
+ * their names; `recursive` takes those below it too, each directory once, by whatever links it can be reached. Hidden
+ * files and directories are left alone. A directory that cannot be read is told on standard error; what is beside it is
+ * taken all the same. Setting *cancel ends it with what was found so far.
+ * Returns how many of the paths gave nothing or not all, each told; -1 when out of memory, told as well. */
+int files_collect(struct files *files, char *const *path, int n_paths, bool recursive, const atomic_bool *cancel);
 void files_free(struct files *files);
+
+/* files_same - whether two names are, or would when written to be, one regular file. */
+bool files_same(const char *a, const char *b);
+/* files_has - whether `path` is one of the files, by whatever name. */
+bool files_has(const struct files *files, const char *path);
 
 /* files_sort - puts them in the order of their bytes, whatever the locale and the command line's order. */
 void files_sort(struct files *files);

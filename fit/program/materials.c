@@ -128,11 +128,10 @@ static int fit_rows(struct csv_table *rows, const struct options *options)
 {
 	struct files files;
 	struct batch batch;
-	const int bad = files_collect(&files, options->path, options->n_paths, options->recursive);
+	const int bad = files_collect(&files, options->path, options->n_paths, options->recursive, options->cancel);
 	if (bad < 0)
 		return EXIT_FAILED;
 	if (batch_init(&batch, options, &files)) {
-		report_error("out of memory");
 		files_free(&files);
 		return EXIT_FAILED;
 	}

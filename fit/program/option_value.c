@@ -273,11 +273,12 @@ static enum status parse_phi(const char *text, int *value, struct error *error)
 	return STATUS_OK;
 }
 
-/* Copies the part of a list before the next comma; returns what stands behind that, NULL at the end. */
+/* Copies the part of a list before the next comma; returns what stands behind that, NULL at the end. What does not fit is
+ * no item of any list and leaves "". */
 static const char *next_item(const char *text, char *item, size_t size)
 {
 	const size_t length = strcspn(text, ",");
-	snprintf(item, size, "%.*s", (int)length, text);
+	snprintf(item, size, "%.*s", length < size ? (int)length : 0, text);
 	return text[length] ? text + length + 1 : NULL;
 }
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "options.h"
+#include "csv.h"
+#include "files.h"
 #include "objective.h"
 #include "option_value.h"
 #include "report.h"
@@ -245,15 +247,16 @@ static int take_option(struct options *options, int i, const char *text)
 
 static int bad_option(enum command command, int code, char **argv)
 {
+	/* getopt_long leaves the letter of a short option. --help=x, of the long ones, has a letter too. */
+	const bool takes_none = optopt >= LONG_OPTION || (code == '?' && optopt == 'h');
+	const bool is_short = optopt != 0 && optopt < LONG_OPTION && !takes_none;
+	const char letter[] = {'-', (char)optopt, '\0'};
 	char shown[TEXT_QUOTE_SIZE];
-	if (optopt > 0 && optopt < LONG_OPTION && argv[optind - 1][1] != '-')
-		snprintf(shown, sizeof shown, "-%c", optopt);
-	else
-		text_quote(argv[optind - 1], shown, sizeof shown);
+	text_quote(is_short ? letter : argv[optind - 1], shown, sizeof shown);
 	return options_usage(command, "%s '%s'",
-			     code == ':'             ? "expected an argument behind"
-			     : optopt >= LONG_OPTION ? "expected no argument in"
-						     : "unknown or ambiguous option",
+			     code == ':'  ? "expected an argument behind"
+			     : takes_none ? "expected no argument in"
+					  : "unknown or ambiguous option",
 			     shown);
 }
 
@@ -316,14 +319,31 @@ int options_check_fit(const struct options *options)
 		return options_usage(options->command, "--starts means nothing with another --algorithm than default");
 	if (options->trace && !isnan(options->within))
 		return options_usage(options->command, "--trace and --within exclude each other");
-	if (options->trace && options->output && !strcmp(options->trace, options->output))
-		return options_usage(options->command, "--trace and --output name the same file");
 	if (options->resume && !options->output)
 		return options_usage(options->command, "--resume needs -o FILE");
 	if (options->resume && options->json)
 		return options_usage(options->command, "--resume needs a CSV, not --json");
 	if (options->readable && options->json && !options->output)
 		return options_usage(options->command, "--table and --json exclude each other without -o");
+	return -1;
+}
+
+/* An output must not take the place of what is read, or of the other one. compare and merge keep a table that they replace
+ * beside it. What a directory holds, fit and compare look at. */
+static int check_outputs(const struct options *options)
+{
+	const char *const output[] = {options->output, options->trace};
+	const bool keeps = options->command == COMMAND_COMPARE || options->command == COMMAND_MERGE;
+	for (int o = 0; o < 2; o++) {
+		bool read = output[o] && options->from && files_same(options->from, output[o]);
+		for (int i = 0; i < options->n_paths && output[o]; i++)
+			read |= files_same(options->path[i], output[o]) && !(keeps && csv_is_name(options->path[i]));
+		if (read)
+			return options_usage(options->command, "--%s names a file that is to be read",
+					     o ? "trace" : "output");
+	}
+	if (options->output && options->trace && files_same(options->output, options->trace))
+		return options_usage(options->command, "--trace and --output name the same file");
 	return -1;
 }
 
@@ -354,8 +374,9 @@ int options_parse(struct options *options, enum command command, int argc, char 
 	options->fit.cancel = cancel;
 	if (!options->n_paths && commands[command].arguments[0] != '[')
 		return options_usage(command, "expected %s, found nothing", commands[command].arguments);
-	return command == COMMAND_FIT || command == COMMAND_COMPARE || command == COMMAND_BENCH ? options_check_fit(options)
-												: -1;
+	const bool fits = command == COMMAND_FIT || command == COMMAND_COMPARE || command == COMMAND_BENCH;
+	const int wrong = fits ? options_check_fit(options) : -1;
+	return wrong >= 0 ? wrong : check_outputs(options);
 }
 
 bool options_given(const struct options *options, const char *name)

@@ -270,7 +270,11 @@ bool result_param(const char *params, const char *name, double *value)
 		at += *at == ';';
 		if (!strncmp(at, name, length) && at[length] == '=') {
 			char text[CSV_NUMBER_SIZE];
-			snprintf(text, sizeof text, "%.*s", (int)strcspn(at + length + 1, ";"), at + length + 1);
+			const char *number = at + length + 1;
+			const size_t digits = strcspn(number, ";");
+			if (digits >= sizeof text)
+				return false;
+			snprintf(text, sizeof text, "%.*s", (int)digits, number);
 			return csv_parse_number(text, value);
 		}
 	}

@@ -140,7 +140,7 @@ static enum status foreign_columns(const char *path, const char *what, struct er
 enum status store_check_columns(const char *path, struct error *error)
 {
 	enum beginning beginning = HEADER_FOREIGN;
-	const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
+	const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
 	if (fd < 0)
 		return cannot(error, "read", path, errno);
 	const enum status status = look_at_header(fd, &beginning);
@@ -187,8 +187,11 @@ enum status store_open(struct store *store, const char *path, bool resume, struc
 	const bool exists = !stat(path, &info);
 	store->regular = !exists || S_ISREG(info.st_mode);
 	store->replaces = exists && store->regular && !resume;
-	enum status status = open_table(store, exists ? (resume ? O_RDWR : O_WRONLY) : O_WRONLY | O_CREAT, error);
-	if (!status && exists && store->regular && resume)
+	store->created = !exists;
+	/* A pipe opened for reading too would be its own reader and swallow the rows. */
+	const bool resumes = exists && store->regular && resume;
+	enum status status = open_table(store, exists ? (resumes ? O_RDWR : O_WRONLY) : O_WRONLY | O_CREAT, error);
+	if (!status && resumes)
 		status = resume_old(store, error);
 	if (status)
 		store_close(store);
@@ -269,6 +272,7 @@ static enum status replace_old(struct store *store, struct error *error)
 	store->fd = -1;
 	store->replaces = false;
 	const enum status status = back_up(store->path, false, error);
+	store->created = !status;
 	return status ? status : open_table(store, O_WRONLY | O_CREAT, error);
 }
 
@@ -332,7 +336,11 @@ enum status store_rewrite(struct store *store, const struct csv_table *rows, str
 
 void store_close(struct store *store)
 {
-	if (store->path && store->fd >= 0)
+	struct stat info;
+	const bool open = store->path && store->fd >= 0;
+	if (open && store->created && !store->headed && !fstat(store->fd, &info) && !info.st_size)
+		unlink(store->path);
+	if (open)
 		close(store->fd);
 	csv_table_free(&store->old);
 	free(store->stale);

@@ -12,6 +12,7 @@ struct store {
 	int fd;               /* -1: closed */
 	bool regular;         /* false: a device or pipe, to which rows are only appended */
 	bool replaces;        /* an older file is there and gets out of the way when the first row comes */
+	bool created;         /* there was none; it goes again if no line comes */
 	bool headed;          /* the header line stands there */
 	struct csv_table old; /* --resume: rows of the earlier run, in order of path and ndf */
 	bool *stale;          /* of each old row: it is left out when the table is written anew */

@@ -1,0 +1,454 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Memory runs out at one allocation after the other, whoever asks for it: the program, nlopt, GSL, xxhash or the C
+ * library. Each run ends with what it would have given anyhow, or with a message, exit code 1, and nothing lost that
+ * was there. The program runs in a child of this one, whose own malloc() decides.
+ * Left out are allocations of OpenMP's runtime, libgomp, which ends the process by itself ("libgomp: Out of memory").
+ * The first allocations of a run are tried, and as many of the others, evenly spread; STDFIT_ALLOC=N in the environment
+ * says how many, STDFIT_SCENARIO names the only command to be tried. */
+#include "commands.h"
+#include "json_check.h"
+#include "merl.h"
+#include "run_program.h"
+
+#include <dlfcn.h>
+#include <execinfo.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <sys/mman.h>
+
+/* The program's own main(), which is not in what tests are linked with. */
+int stdfit_main(int argc, char **argv);
+#define main stdfit_main
+#include "main.c"
+#undef main
+
+/* --- the allocator ----------------------------------------------------------------------------------------------- */
+
+/* What a run is to do, and did; shared with the child. */
+static struct control {
+	atomic_long count;  /* allocations so far */
+	long fail_at;       /* the one to fail, from 1; 0: none */
+	bool all_after;     /* and every later one */
+	atomic_long failed; /* how many did */
+} * control;
+
+static bool armed; /* in the child, while the program runs */
+static _Thread_local bool inside;
+
+static bool is_in(const char *file, const char *name)
+{
+	return file && strstr(file, name);
+}
+
+/* Whether it is libgomp that asks, perhaps through the C library. */
+static bool asked_by_openmp(void)
+{
+	void *frame[32];
+	Dl_info info;
+	const int n = backtrace(frame, 32);
+	for (int i = 3; i < n; i++) {
+		if (!dladdr(frame[i], &info))
+			return false;
+		if (is_in(info.dli_fname, "libc.so") || is_in(info.dli_fname, "ld-linux") ||
+		    is_in(info.dli_fname, "libasan") || is_in(info.dli_fname, "libubsan"))
+			continue;
+		return is_in(info.dli_fname, "libgomp") || is_in(info.dli_fname, "libomp");
+	}
+	return false;
+}
+
+static __attribute__((noinline)) bool refuse(void)
+{
+	if (!armed || inside)
+		return false;
+	const long n = ++control->count;
+	if (!control->fail_at || n < control->fail_at || (n > control->fail_at && !control->all_after))
+		return false;
+	inside = true;
+	const bool refused = !asked_by_openmp();
+	inside = false;
+	if (refused) {
+		control->failed++;
+		errno = ENOMEM;
+	}
+	return refused;
+}
+
+/* glibc's own functions, or the sanitizer's. */
+void *__libc_malloc(size_t size);
+void *__libc_calloc(size_t n, size_t size);
+void *__libc_realloc(void *old, size_t size);
+void *__libc_memalign(size_t alignment, size_t size);
+__attribute__((weak)) void __lsan_disable(void);
+__attribute__((weak)) void __lsan_enable(void);
+__attribute__((weak)) void *__interceptor_malloc(size_t size);
+__attribute__((weak)) void *__interceptor_calloc(size_t n, size_t size);
+__attribute__((weak)) void *__interceptor_realloc(void *old, size_t size);
+__attribute__((weak)) void *__interceptor_memalign(size_t alignment, size_t size);
+
+void *malloc(size_t size)
+{
+	return refuse() ? NULL : __interceptor_malloc ? __interceptor_malloc(size) : __libc_malloc(size);
+}
+
+void *calloc(size_t n, size_t size)
+{
+	return refuse() ? NULL : __interceptor_calloc ? __interceptor_calloc(n, size) : __libc_calloc(n, size);
+}
+
+void *realloc(void *old, size_t size)
+{
+	return refuse() ? NULL : __interceptor_realloc ? __interceptor_realloc(old, size) : __libc_realloc(old, size);
+}
+
+static void *get_aligned(size_t alignment, size_t size)
+{
+	return refuse()                 ? NULL
+	       : __interceptor_memalign ? __interceptor_memalign(alignment, size)
+					: __libc_memalign(alignment, size);
+}
+
+void *aligned_alloc(size_t alignment, size_t size)
+{
+	return get_aligned(alignment, size);
+}
+
+int posix_memalign(void **memory, size_t alignment, size_t size)
+{
+	void *got = get_aligned(alignment, size);
+	if (!got)
+		return ENOMEM;
+	*memory = got;
+	return 0;
+}
+
+/* --- runs -------------------------------------------------------------------------------------------------------- */
+
+struct scenario {
+	const char *name, *arguments;
+	const char *output; /* what it writes besides standard output; NULL: nothing */
+	const char *before; /* a file that is there before under that name; NULL: none */
+	bool binary;        /* the output is no text */
+	bool heavy;         /* it reads or writes a whole MERL file */
+	bool varies;        /* what it gives depends on time */
+};
+
+enum { ARGUMENTS_MAX = 32 };
+
+/* Runs in the child: the program with these arguments, and never returns. */
+static void run_child(const struct scenario *scenario)
+{
+	static char name[] = "stdfit", text[512];
+	char *argv[ARGUMENTS_MAX] = {name};
+	int argc = 1;
+	snprintf(text, sizeof text, "%s", scenario->arguments);
+	for (char *word = strtok(text, " "); word; word = strtok(NULL, " "))
+		argv[argc++] = word;
+	/* Opened anew, the streams have to ask for their buffers. */
+	if (!freopen("../out", "w", stdout) || !freopen("../err", "w", stderr))
+		_exit(99);
+	/* cmocka's handlers would go on with the tests. */
+	static const int deadly[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGABRT};
+	for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
+		signal(deadly[i], SIG_DFL);
+	alarm(120); /* a hang ends */
+	armed = true;
+	const int code = stdfit_main(argc, argv);
+	armed = false;
+	exit(code);
+}
+
+/* The directory in which a run begins. */
+static void prepare(const struct scenario *scenario)
+{
+	char command[256];
+	snprintf(command, sizeof command,
+		 "rm -rf run; mkdir run run/d run/d/e; ln a.binary run/a.binary; ln a.binary run/d/e/b.binary;"
+		 "cp table.csv shard.csv run; %s%s%s%s",
+		 scenario->before ? "cp " : "", scenario->before ? scenario->before : "",
+		 scenario->before ? " run/" : "", scenario->before ? scenario->output : "");
+	assert_int_equal(end(start(command)), 0);
+}
+
+static int run(const struct scenario *scenario, long fail_at, bool all_after)
+{
+	prepare(scenario);
+	control->count = control->failed = 0;
+	control->fail_at = fail_at;
+	control->all_after = all_after;
+	assert_int_equal(chdir("run"), 0);
+	fflush(stdout);
+	const pid_t pid = fork();
+	assert_true(pid >= 0);
+	if (pid == 0)
+		run_child(scenario);
+	const int code = end(pid);
+	assert_int_equal(chdir(".."), 0);
+	return code;
+}
+
+static bool is_result_table(const char *text)
+{
+	return !strncmp(text, "material,ndf,error,kd_r", strlen("material,ndf,error,kd_r"));
+}
+
+/* What a file holds, without seconds; NULL if it is not there. */
+static char *content(const char *path, bool binary)
+{
+	if (access(path, F_OK))
+		return NULL;
+	if (binary) {
+		struct samples samples;
+		char text[RESULT_INPUT_SIZE];
+		if (merl_read(path, 1, &samples, NULL))
+			return strdup("broken");
+		result_input(text, &samples);
+		samples_free(&samples);
+		return strdup(text);
+	}
+	char *text = slurp(path);
+	if (!is_result_table(text))
+		return text;
+	free(text);
+	return without_seconds(path);
+}
+
+static bool same(const char *a, const char *b)
+{
+	return a == b || (a && b && !strcmp(a, b));
+}
+
+/* Each row of a table that was left behind tells why it failed, or is one that the whole run gives, or was there. */
+static void check_rows(const char *left, const char *whole, const char *before)
+{
+	char *copy = strdup(left);
+	for (char *line = strtok(copy, "\n"); line; line = strtok(NULL, "\n"))
+		if (!strstr(line, ",failed: ") && !strstr(line, ",\"failed: ") && !strstr(whole, line) &&
+		    !(before && strstr(before, line)))
+			fail_msg("a row that should not be there: %s", line);
+	free(copy);
+}
+
+/* What a run that failed may leave of its output: nothing, what was there, or rows of the whole. */
+static void check_output(const struct scenario *scenario, const char *whole)
+{
+	char path[64], back_path[64];
+	snprintf(path, sizeof path, "run/%s", scenario->output);
+	snprintf(back_path, sizeof back_path, "run/%s~", scenario->output);
+	char *before = scenario->before ? content(scenario->before, scenario->binary) : NULL;
+	char *left = content(path, scenario->binary), *back = content(back_path, scenario->binary);
+	if (left && !same(left, before) && !same(left, whole)) {
+		char *text = scenario->binary ? strdup("") : slurp(path);
+		const bool tells = json_is_valid(text) && strstr(text, "\"failed: ");
+		const bool table = is_result_table(text);
+		free(text);
+		if (!table && !tells)
+			fail_msg("%s is neither whole nor as it was: %.300s", path, left);
+		if (table)
+			check_rows(left, whole, before);
+	}
+	/* Nothing is lost that was there: as a file, or row by row. */
+	if (before && !same(left, before) && !same(back, before)) {
+		char *copy = strdup(before);
+		for (char *line = strtok(copy, "\n"); line; line = strtok(NULL, "\n"))
+			if (!left || !strstr(left, line))
+				fail_msg("%s has lost a row: %s", path, line);
+		free(copy);
+	}
+	free(back);
+	free(left);
+	free(before);
+}
+
+static void check_messages(const char *text)
+{
+	if (!*text)
+		fail_msg("it failed without a word");
+	for (const char *line = text; *line; line = strchr(line, '\n') + 1)
+		if (strncmp(line, "stdfit: ", 8) != 0 || !strchr(line, '\n'))
+			fail_msg("unexpected message: %s", line);
+}
+
+struct outcome {
+	char *out, *output;
+};
+
+/* One run with a failure; what went wrong is told with the scenario and the number of the allocation. */
+static void check_failure(const struct scenario *scenario, const struct outcome *whole, long n, bool all_after)
+{
+	const int code = run(scenario, n, all_after);
+	char path[64], *err = slurp("err");
+
+	if (code != EXIT_DONE && code != EXIT_FAILED)
+		fail_msg("%s, allocation %ld%s: exit code %d; standard error: %s", scenario->name, n,
+			 all_after ? " and all later ones" : "", code, err);
+	snprintf(path, sizeof path, "run/%s", scenario->output ? scenario->output : "");
+	if (code == EXIT_DONE) {
+		char *out = content("out", false), *output = scenario->output ? content(path, scenario->binary) : NULL;
+		if (!scenario->varies && (!same(out, whole->out) || !same(output, whole->output)))
+			fail_msg("%s, allocation %ld%s: exit code 0, but not the same output", scenario->name, n,
+				 all_after ? " and all later ones" : "");
+		free(output);
+		free(out);
+	} else {
+		printf("%s, allocation %ld%s\n", scenario->name, n, all_after ? " and all later ones" : "");
+		check_messages(err);
+		if (scenario->output)
+			check_output(scenario, whole->output);
+	}
+	free(err);
+	shell("find run -name '.stdfit-*'");
+	assert_string_equal(last.out, "");
+}
+
+/* How many of the first allocations are tried, and of the others. */
+static long tries(const struct scenario *scenario)
+{
+	const char *wish = getenv("STDFIT_ALLOC");
+	return wish ? atol(wish) : scenario->heavy ? 2 : 50;
+}
+
+static void check_scenario(const struct scenario *scenario)
+{
+	char path[64];
+	snprintf(path, sizeof path, "run/%s", scenario->output ? scenario->output : "");
+	assert_int_equal(run(scenario, 0, false), EXIT_DONE);
+	const long total = control->count, most = tries(scenario);
+	const long first = most < total ? most : total, others = most < total - first ? most : total - first;
+	struct outcome whole = {content("out", false), scenario->output ? content(path, scenario->binary) : NULL};
+	for (long n = 1; n <= first; n++)
+		check_failure(scenario, &whole, n, n % 2);
+	for (long i = 0; i < others; i++)
+		check_failure(scenario, &whole, first + 1 + i * (total - first) / others, i % 2);
+	/* With many wished for, each both ways. */
+	for (long n = 1; n <= first && most > 50; n++)
+		check_failure(scenario, &whole, n, n % 2 == 0);
+	printf("%s: %ld allocations, %ld tried\n", scenario->name, total, first + others);
+	free(whole.out);
+	free(whole.output);
+}
+
+#define CHEAP "--threads 1 --ndf ggx --sigma 0.2 --ior 1.5 --max-theta 5"
+
+static const struct scenario scenarios[] = {
+	{.name = "version", .arguments = "--version"},
+	{.name = "help", .arguments = "fit --help"},
+	{.name = "compare a table",
+	 .arguments = "compare table.csv -o summary.csv",
+	 .output = "summary.csv",
+	 .before = "old.csv"},
+	{.name = "compare as JSON", .arguments = "compare table.csv --json"},
+	{.name = "merge", .arguments = "merge table.csv shard.csv -o merged.csv", .output = "merged.csv"},
+	{.name = "info", .arguments = "info a.binary --json", .heavy = true},
+	{.name = "eval",
+	 .arguments = "eval a.binary --threads 1 --kd 0.3 --ks 0.5 --ndf std --sigma 0.2 --gamma 2.5 --ior 1.5",
+	 .heavy = true},
+	{.name = "eval --from", .arguments = "eval a.binary --threads 1 --from table.csv", .heavy = true},
+	{.name = "synth",
+	 .arguments = "synth new.binary --threads 1 --kd 0.4 --noise 0.1",
+	 .output = "new.binary",
+	 .binary = true,
+	 .heavy = true},
+	{.name = "fit a directory",
+	 .arguments = "-r . " CHEAP " -o new.csv",
+	 .output = "new.csv",
+	 .before = "old.csv",
+	 .heavy = true},
+	{.name = "fit --resume",
+	 .arguments = "a.binary d/e/b.binary " CHEAP " --resume -o new.csv",
+	 .output = "new.csv",
+	 .before = "half.csv",
+	 .heavy = true},
+	{.name = "fit --json",
+	 .arguments = "a.binary --threads 1 --ndf std,ggx --max-theta 5 --no-specular --json -o new.json",
+	 .output = "new.json",
+	 .heavy = true},
+	{.name = "fit --trace",
+	 .arguments = "a.binary " CHEAP " --trace trace.csv -o new.csv",
+	 .output = "new.csv",
+	 .heavy = true},
+	{.name = "fit --within", .arguments = "a.binary " CHEAP " --within 1%", .heavy = true},
+	{.name = "fit in two threads", .arguments = "a.binary d/e/b.binary " CHEAP " --threads 2", .heavy = true},
+	{.name = "search", .arguments = "a.binary --threads 1 --ndf std --max-theta 3", .heavy = true},
+	{.name = "search of pl", .arguments = "a.binary --threads 1 --ndf pl --max-theta 2", .heavy = true},
+	{.name = "crs2",
+	 .arguments = "a.binary --threads 1 --ndf ggx --max-theta 3 --time 0.05 --algorithm crs2",
+	 .heavy = true,
+	 .varies = true},
+	{.name = "mlsl",
+	 .arguments = "a.binary --threads 1 --ndf ggx --max-theta 3 --time 0.05 --algorithm mlsl",
+	 .heavy = true,
+	 .varies = true},
+	{.name = "direct-l",
+	 .arguments = "a.binary --threads 1 --ndf ggx --max-theta 3 --time 0.05 --algorithm direct-l",
+	 .heavy = true,
+	 .varies = true},
+	{.name = "esch-joint",
+	 .arguments = "a.binary --threads 1 --ndf ggx --max-theta 3 --time 0.05 --algorithm esch-joint",
+	 .heavy = true,
+	 .varies = true},
+	{.name = "isres",
+	 .arguments = "a.binary --threads 1 --ndf ggx --max-theta 3 --time 0.05 --algorithm isres",
+	 .heavy = true,
+	 .varies = true},
+};
+
+/* STDFIT_SCENARIO may name the only one to be tried. */
+static bool is_wanted(const struct scenario *scenario)
+{
+	const char *name = getenv("STDFIT_SCENARIO");
+	return !name || !strcmp(name, scenario->name);
+}
+
+static void light(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < sizeof scenarios / sizeof *scenarios; i++)
+		if (!scenarios[i].heavy && is_wanted(&scenarios[i]))
+			check_scenario(&scenarios[i]);
+}
+
+static void heavy(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < sizeof scenarios / sizeof *scenarios; i++)
+		if (scenarios[i].heavy && is_wanted(&scenarios[i]))
+			check_scenario(&scenarios[i]);
+}
+
+static int set_up(void **state)
+{
+	(void)state;
+	void *frame[4];
+	/* What it loads at first, and keeps, is there before the forks. */
+	if (__lsan_disable)
+		__lsan_disable();
+	backtrace(frame, 4);
+	if (__lsan_enable)
+		__lsan_enable();
+	control = mmap(NULL, sizeof *control, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+	if (control == MAP_FAILED || !enter_directory())
+		return -1;
+	alarm(getenv("STDFIT_ALLOC") ? 0 : 300);
+	shell("\"$STDFIT\" synth a.binary --ndf ggx --sigma 0.2 --ior 1.5 --kd 0.3,0.2,0.1 --ks 0.5 && ln a.binary "
+	      "b.binary"
+	      " && \"$STDFIT\" a.binary " CHEAP " -o table.csv && \"$STDFIT\" b.binary " CHEAP " -o shard.csv"
+	      " && cp table.csv half.csv && \"$STDFIT\" b.binary --threads 1 --no-specular --max-theta 5 -o old.csv");
+	return last.code;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	return leave_directory();
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(light),
+		cmocka_unit_test(heavy),
+	};
+	return cmocka_run_group_tests(tests, set_up, tear_down);
+}
