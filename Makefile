@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Targets: all (default), check, demo, bench, figures, asan, ubsan, tsan, lint, valgrind, compilers, clean. All but `all`
-# and `clean` install what is missing first.
+# Targets: all (default), check, demo, bench, figures, asan, ubsan, tsan, lint, valgrind, compilers, fuzz, killtest, clean.
+# All but `all` and `clean` install what is missing first.
 VERSION := 0.1.0
 
 CC ?= cc
@@ -108,6 +108,35 @@ compilers:
 	@scripts/setup.sh $@
 	@MERL='$(MERL)' scripts/compilers.sh $(BUILD)
 
+# Each target for so many seconds under libFuzzer, which is clang's.
+FUZZ_SECONDS ?= 10
+fuzz_targets := $(patsubst tests/%.c,%,$(filter-out tests/fuzz_main.c,$(wildcard tests/fuzz_*.c)))
+fuzz:
+	@scripts/setup.sh $@
+	@$(MAKE) --no-print-directory CC='$(FUZZ_CC)' BUILD=$(BUILD)-$@ \
+		OPT='-O2 -g -fno-omit-frame-pointer -Wno-pass-failed $(sanitize_fuzz)' run-fuzz
+FUZZ_CC ?= clang
+sanitize_fuzz := -fsanitize=fuzzer-no-link,address,undefined,float-cast-overflow -fno-sanitize-recover=all
+
+# A batch killed so many times at random moments, and resumed.
+KILLS ?= 200
+killtest: setup
+	@$(MAKE) --no-print-directory all
+	@scripts/kill_test.sh $(BUILD)/stdfit $(KILLS)
+
+run-fuzz: $(fuzz_targets:%=$(BUILD)/tests/%)
+	@scripts/fuzz.sh $(BUILD) $(FUZZ_SECONDS) $(fuzz_targets)
+
+# The same targets, by their own names, are called by test_corpus.
+$(BUILD)/tests/test_corpus: $(fuzz_targets:%=$(BUILD)/tests/%.o)
+$(fuzz_targets:%=$(BUILD)/tests/%): $(BUILD)/tests/fuzz_%: $(BUILD)/tests/fuzz_%.o $(BUILD)/tests/fuzz_main_%.o \
+		$(lib_objects)
+	$(call quiet,LD)$(CC) $(ALL_CFLAGS) -fsanitize=fuzzer $(LDFLAGS) -o $@ $^ $(LIBS)
+
+$(BUILD)/tests/fuzz_main_%.o: tests/fuzz_main.c Makefile
+	@mkdir -p $(@D)
+	$(call quiet,CC)$(CC) $(ALL_CFLAGS) -DFUZZ_TARGET=fuzz_$* -MMD -MP -c -o $@ $<
+
 bench: setup
 	@$(MAKE) --no-print-directory $(BUILD)/tests/bench
 	$(BUILD)/tests/bench $(BUILD)/bench.csv
@@ -125,6 +154,6 @@ clean:
 	rm -rf $(BUILD)
 
 
-.PHONY: all setup check run-tests asan ubsan tsan lint valgrind compilers bench figures demo clean
+.PHONY: all setup check run-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures demo clean
 
 -include $(lib_objects:.o=.d) $(BUILD)/fit/program/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))

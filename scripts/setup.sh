@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# usage: setup.sh [lint | tsan | valgrind | compilers]
+# usage: setup.sh [lint | tsan | valgrind | compilers | fuzz]
 # Installs what building and testing need, or what that target of make needs besides, with apt-get, if anything of it is
 # missing. Says nothing if nothing is.
 set -u
@@ -14,7 +14,7 @@ tools=
 case $target in
 '') ;;
 lint) tools='clang clang-tidy cppcheck shellcheck' packages="$packages clang clang-tidy libomp-dev cppcheck shellcheck" ;;
-tsan | compilers) tools='clang' packages="$packages clang libclang-rt-dev libomp-dev" ;;
+tsan | compilers | fuzz) tools='clang' packages="$packages clang libclang-rt-dev libomp-dev" ;;
 valgrind) tools='valgrind' packages="$packages valgrind" ;;
 *)
 	echo "setup: no such target: '$target'" >&2
@@ -33,6 +33,7 @@ missing() {
 	done
 	case $target in
 	tsan) links -fsanitize=thread || printf ' ThreadSanitizer of clang' ;;
+	fuzz) links -fsanitize=address || printf ' sanitizers of clang' ;;
 	compilers) links || printf ' OpenMP of clang' ;;
 	esac
 }
