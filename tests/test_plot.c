@@ -292,7 +292,7 @@ static void wrong_input(void **state)
 	write_text("no_trace.csv", "material,ndf,algorithm,stage,evaluations,seconds,error\n");
 	shell("head -n 1 fits.csv >rowless.csv; sed 's/,ggx,/,phong,/' fits.csv >phong.csv; sed "
 	      "'2,$s/converged/failed: x/' "
-	      "fits.csv >failed.csv; touch file");
+	      "fits.csv >failed.csv; touch file; mkdir own; cp fits.csv own/errors.csv; cp no_trace.csv own/trace.csv");
 	static const struct {
 		const char *arguments, *message;
 		int code;
@@ -309,6 +309,8 @@ static void wrong_input(void **state)
 		{"plot rowless.csv -o x", "'rowless.csv' has no rows", 1},
 		{"plot bad_trace.csv -o x", "'bad_trace.csv' line 2: expected a number in column seconds", 1},
 		{"plot no_trace.csv -o x", "no points", 1},
+		{"plot own/trace.csv -o own", "expected another directory: trace.csv in this one", 2},
+		{"plot own/errors.csv -o ./own/", "expected another directory: errors.csv in this one", 2},
 		{"plot none.binary -o x", "none.binary", 1},
 		{"plot fits.csv -o file", "cannot write to directory 'file': Not a directory", 1},
 		{"plot fits.csv -o no/such", "cannot write to directory 'no/such'", 1},

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit plot - fits, and the course of searches, as pictures by gnuplot. */
+#include "files.h"
 #include "gnuplot.h"
 #include "output_directory.h"
 #include "plot_files.h"
@@ -104,6 +105,24 @@ static void plot_the_fits(struct plotting *p)
 	p->code = code != EXIT_DONE ? code : p->code;
 }
 
+/* A file of its own that the command would write in the place of one that it is to read; NULL: there is none. */
+static const char *replaced_input(const struct options *options)
+{
+	static const char *const name[] = {"trace.csv", "errors.csv"};
+	for (size_t n = 0; n < sizeof name / sizeof *name; n++) {
+		char *path;
+		if (asprintf(&path, "%s/%s", options->output, name[n]) < 0)
+			return name[n];
+		bool same = false;
+		for (int i = 0; i < options->n_paths; i++)
+			same |= files_same(options->path[i], path);
+		free(path);
+		if (same)
+			return name[n];
+	}
+	return NULL;
+}
+
 int cmd_plot(int argc, char **argv, atomic_bool *cancel)
 {
 	struct options options;
@@ -113,6 +132,10 @@ int cmd_plot(int argc, char **argv, atomic_bool *cancel)
 		code = options_check_fit(&options);
 	if (code < 0 && !options.output)
 		code = options_usage(COMMAND_PLOT, "expected -o DIR, a directory for the plots");
+	const char *replaced = code < 0 ? replaced_input(&options) : NULL;
+	if (replaced)
+		code = options_usage(COMMAND_PLOT, "expected another directory: %s in this one is to be read",
+				     replaced);
 	if (code >= 0)
 		return code;
 	if (output_directory_make(options.output, NULL, NULL, &error)) {
