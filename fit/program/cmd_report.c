@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* stdfit report - fits as one HTML page that holds all it needs. */
+/* stdfit report - fits as one HTML page that holds all it needs: written to DIR/index.html, pictures by way of a scratch
+ * directory beside it. */
 #include "atomic_file.h"
 #include "gnuplot.h"
 #include "output_directory.h"

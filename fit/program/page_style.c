@@ -37,7 +37,7 @@ const char page_style[] =
 	"dl{display:grid;grid-template-columns:minmax(6rem,max-content) 1fr;gap:.2rem 1rem}\n"
 	"dt{color:var(--soft)}dd{margin:0}\n"
 	"@media(max-width:40rem){body{padding:.7rem}dl{grid-template-columns:1fr}dd{margin-bottom:.4rem}"
-	".pan{overflow-x:auto}.pan img{min-width:38rem}}\n"
+	".pan{overflow-x:auto}.pan img.plot{min-width:38rem}}\n"
 	"@media print{details.material{border:0}}\n";
 
 /* Headers of tables.sortable become buttons; links to a material open it. */
