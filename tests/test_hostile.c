@@ -339,6 +339,30 @@ static void outputs_into_a_pipe(void **state)
 	csv_table_free(&table);
 }
 
+/* What cannot be read for the moment keeps the rows that it has; what is something else now does not. */
+static void files_that_went_away(void **state)
+{
+	(void)state;
+	shell("mkdir away; cp a.binary away/x.binary; ln away/x.binary away/y.binary");
+	stdfit("away/x.binary away/y.binary " CHEAP " -o away.csv");
+	expect_code(0);
+	shell("cp away.csv kept.csv; mv away/x.binary away/moved; exec \"$STDFIT\" away/x.binary away/y.binary " CHEAP
+	      " --resume -o away.csv");
+	expect_error(1, "cannot read 'away/x.binary': No such file");
+	shell("cmp away.csv kept.csv");
+	expect_code(0);
+	shell("echo text >away/x.binary; exec \"$STDFIT\" away/x.binary away/y.binary " CHEAP " --resume -o away.csv");
+	expect_error(1, "cannot read 'away/x.binary': expected a binary MERL table");
+	struct csv_table table = read_table("away.csv");
+	assert_int_equal(table.n_rows, 2);
+	assert_true(result_failed(table.row[0]));
+	csv_table_free(&table);
+	shell("cmp away.csv~ kept.csv");
+	expect_code(1); /* the failed row had been appended there already */
+	shell("head -n 3 away.csv~ | cmp - kept.csv");
+	expect_code(0);
+}
+
 static void outputs_on_a_full_disk(void **state)
 {
 	(void)state;
@@ -392,6 +416,7 @@ int main(void)
 		cmocka_unit_test(outputs_in_the_place_of_inputs),
 		cmocka_unit_test(outputs_behind_links),
 		cmocka_unit_test(outputs_into_a_pipe),
+		cmocka_unit_test(files_that_went_away),
 		cmocka_unit_test(outputs_on_a_full_disk),
 		cmocka_unit_test(closed_streams),
 	};

@@ -60,7 +60,7 @@ void batch_free(struct batch *batch)
 
 struct result_source batch_source(const struct batch *batch, const struct batch_file *file)
 {
-	return (struct result_source){file->path, file->input, batch->options_text};
+	return (struct result_source){file->path, file->unread ? NULL : file->input, batch->options_text};
 }
 
 /* The geometry for this kind of table, made by whoever needs it first. */
@@ -122,6 +122,7 @@ static enum status process(struct run *run, struct batch_file *file)
 		fit.trace_data = &file->trace;
 	}
 	enum status status = merl_read(file->path, fit.threads, &samples, &file->error);
+	file->unread = status == STATUS_IO || status == STATUS_NO_MEMORY;
 	if (!status) {
 		result_input(file->input, &samples);
 		const struct result_source source = batch_source(run->batch, file);
@@ -143,6 +144,9 @@ static enum status process(struct run *run, struct batch_file *file)
 	if (file->failed) {
 		const struct result_source source = batch_source(run->batch, file);
 		csv_table_free(&file->rows);
+		/* A disk that is away for a while undoes no fit. */
+		if (file->unread && run->batch->store)
+			drop_known(run->batch, &source, &fit);
 		if (result_add_failure(&file->rows, &source, &fit, file->error.text))
 			csv_table_free(&file->rows); /* no room for a row; the message is there still */
 	}

@@ -12,6 +12,7 @@
 struct batch_file {
 	const char *path;
 	char input[RESULT_INPUT_SIZE]; /* "" until it is read */
+	bool unread;                   /* it could not be read at all: what bytes it has is not known */
 	struct csv_table rows;         /* new rows: none for NDFs that the store has, a failure's row per NDF */
 	struct trace trace;            /* if the options want one */
 	bool done;                     /* false: not begun, or interrupted */

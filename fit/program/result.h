@@ -51,7 +51,7 @@ extern const struct csv_column result_columns[RESULT_COLUMNS];
 /* struct result_source - what the rows of one file share. */
 struct result_source {
 	const char *path;
-	const char *input;   /* "<size>:<hash>", see result_input(); "" when the file could not be read */
+	const char *input;   /* "<size>:<hash>", see result_input(); "" when it is no MERL file, NULL when not known */
 	const char *options; /* canonical text of every option that changes the result */
 };
 

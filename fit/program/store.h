@@ -23,8 +23,8 @@ struct store {
  * Errors: STATUS_IO, STATUS_NO_MEMORY, STATUS_FORMAT (resume, and the file is no result table of this version). */
 MUST_CHECK enum status store_open(struct store *store, const char *path, bool resume, struct error *error);
 
-/* store_has - whether the earlier run left a row of this file, bytes, options and version, for the NDF of that name
- * (NULL: for some NDF) that did not fail. Safe from several threads. */
+/* store_has - whether the earlier run left a row of this file, bytes (any, where they are not known), options and
+ * version, for the NDF of that name (NULL: for some NDF) that did not fail. Safe from several threads. */
 bool store_has(const struct store *store, const struct result_source *source, const char *ndf);
 /* store_drop_stale - the old rows of source->path for which store_has() does not hold will not be kept. */
 void store_drop_stale(struct store *store, const struct result_source *source);
