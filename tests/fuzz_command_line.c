@@ -48,7 +48,7 @@ static int parse(int argc, char **argv)
 	const int code = options_parse(&options, named ? command : COMMAND_FIT, argc + !named, whole, &cancel);
 	if (code >= 0)
 		return code;
-	PROMISE(options.n_paths > 0 && options.path[options.n_paths] == NULL);
+	PROMISE(options.n_paths >= 0 && options.path[options.n_paths] == NULL);
 	check_text(&options);
 	return command == COMMAND_EVAL || command == COMMAND_SYNTH ? check_model(&options) : code;
 }

@@ -5,6 +5,7 @@
 #include "model_source.h"
 #include "report.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,38 +63,40 @@ static enum status write_merl(const struct export *export, const char *path, str
 	return status;
 }
 
-static enum status put_text(const char *text, size_t size, const char *path, struct error *error)
+static enum status write_stream(const struct export *export, FILE *stream, struct error *error)
 {
-	struct atomic_file file;
-	if (!path) {
-		fwrite(text, 1, size, stdout); /* main() tells when that fails */
-		return STATUS_OK;
-	}
-	const enum status status = atomic_file_open(&file, path, error);
+	struct error why;
+	const enum status status = export_write(export, stream, &why);
 	if (status)
-		return status;
-	fwrite(text, 1, size, file.stream);
-	return atomic_file_commit(&file, error);
+		return error_set(error, status, "cannot export to %s: %.400s", export_format_name(export->format),
+				 why.text);
+	return STATUS_OK;
 }
 
-/* Into memory first: what cannot be written leaves no half output. */
+/* On standard output there is no half of a text that cannot be written whole: that shows in a first go, to nowhere.
+ * (A stream in memory would lose a part without a word when it cannot grow.) */
+static enum status write_standard(const struct export *export, struct error *error)
+{
+	FILE *nowhere = fopen("/dev/null", "w");
+	if (!nowhere)
+		return error_set(error, STATUS_IO, "cannot write '/dev/null': %s", strerror(errno));
+	const enum status status = write_stream(export, nowhere, error);
+	fclose(nowhere);
+	return status ? status : write_stream(export, stdout, error); /* main() tells when writing fails */
+}
+
 static enum status write_text(const struct export *export, const char *path, struct error *error)
 {
-	char *text = NULL;
-	size_t size;
-	FILE *memory = open_memstream(&text, &size);
-	if (!memory)
-		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	struct error why;
-	enum status status = export_write(export, memory, &why);
-	const bool failed = ferror(memory);
-	if ((fclose(memory) || failed) && !status)
-		status = error_set(&why, STATUS_NO_MEMORY, "out of memory");
+	struct atomic_file file;
+	if (!path)
+		return write_standard(export, error);
+	enum status status = atomic_file_open(&file, path, error);
 	if (status)
-		error_set(error, status, "cannot export to %s: %.400s", export_format_name(export->format), why.text);
-	else
-		status = put_text(text, size, path, error);
-	free(text);
+		return status;
+	status = write_stream(export, file.stream, error);
+	if (!status)
+		return atomic_file_commit(&file, error);
+	atomic_file_abort(&file);
 	return status;
 }
 

@@ -97,7 +97,7 @@ static void write_option(FILE *file, const struct options *defaults, const struc
 	FILE *memory = open_memstream(&text, &size);
 	if (memory) {
 		option_describe(memory, defaults, spec);
-		if (!fclose(memory))
+		if (!fclose(memory) && text)
 			write_text(file, text);
 		free(text);
 	}
