@@ -48,14 +48,10 @@ without_seconds whole.csv >whole
 : >finished
 
 while [ "$n" -lt "$kills" ]; do
-	# shellcheck disable=SC2086
-	"$stdfit" files $fit --resume -o cut.csv &
-	pid=$!
 	random $((length + length / 4))
-	sleep "$(printf '0.%03d' $((random % 1000)))"
-	[ "$random" -lt 1000 ] || sleep $((random / 1000))
-	kill -KILL "$pid" 2>/dev/null
-	wait "$pid" 2>/dev/null
+	# shellcheck disable=SC2086
+	timeout -s KILL "$((random / 1000)).$(printf '%03d' $((random % 1000)))" \
+		"$stdfit" files $fit --resume -o cut.csv 2>/dev/null
 	code=$?
 	if [ "$code" -eq 0 ]; then
 		# Through before it could be killed.
