@@ -41,24 +41,31 @@ static bool is_in(const char *file, const char *name)
 	return file && strstr(file, name);
 }
 
-/* Whether it is libgomp that asks, perhaps through the C library. */
-static bool asked_by_openmp(void)
+/* Whether it is a runtime that asks, perhaps through the C library, and ends the process if it gets nothing: OpenMP's, or
+ * that of a sanitizer. caller: where the allocator was called from. */
+static bool asked_by_runtime(const void *caller)
 {
+	static const char *const runtime[] = {"libgomp", "libomp", "libasan", "libubsan", "libtsan"};
 	void *frame[32];
 	Dl_info info;
 	const int n = backtrace(frame, 32);
-	for (int i = 3; i < n; i++) {
+	int i = 0;
+	while (i < n && frame[i] != caller)
+		i++;
+	for (; i < n; i++) {
 		if (!dladdr(frame[i], &info))
 			return false;
-		if (is_in(info.dli_fname, "libc.so") || is_in(info.dli_fname, "ld-linux") ||
-		    is_in(info.dli_fname, "libasan") || is_in(info.dli_fname, "libubsan"))
+		if (is_in(info.dli_fname, "libc.so") || is_in(info.dli_fname, "ld-linux"))
 			continue;
-		return is_in(info.dli_fname, "libgomp") || is_in(info.dli_fname, "libomp");
+		for (size_t r = 0; r < sizeof runtime / sizeof *runtime; r++)
+			if (is_in(info.dli_fname, runtime[r]))
+				return true;
+		return false;
 	}
 	return false;
 }
 
-static __attribute__((noinline)) bool refuse(void)
+static __attribute__((noinline)) bool refuse(const void *caller)
 {
 	if (!armed || inside)
 		return false;
@@ -66,7 +73,7 @@ static __attribute__((noinline)) bool refuse(void)
 	if (!control->fail_at || n < control->fail_at || (n > control->fail_at && !control->all_after))
 		return false;
 	inside = true;
-	const bool refused = !asked_by_openmp();
+	const bool refused = !asked_by_runtime(caller);
 	inside = false;
 	if (refused) {
 		control->failed++;
@@ -89,34 +96,40 @@ __attribute__((weak)) void *__interceptor_memalign(size_t alignment, size_t size
 
 void *malloc(size_t size)
 {
-	return refuse() ? NULL : __interceptor_malloc ? __interceptor_malloc(size) : __libc_malloc(size);
+	return refuse(__builtin_return_address(0)) ? NULL
+	       : __interceptor_malloc              ? __interceptor_malloc(size)
+						   : __libc_malloc(size);
 }
 
 void *calloc(size_t n, size_t size)
 {
-	return refuse() ? NULL : __interceptor_calloc ? __interceptor_calloc(n, size) : __libc_calloc(n, size);
+	return refuse(__builtin_return_address(0)) ? NULL
+	       : __interceptor_calloc              ? __interceptor_calloc(n, size)
+						   : __libc_calloc(n, size);
 }
 
 void *realloc(void *old, size_t size)
 {
-	return refuse() ? NULL : __interceptor_realloc ? __interceptor_realloc(old, size) : __libc_realloc(old, size);
+	return refuse(__builtin_return_address(0)) ? NULL
+	       : __interceptor_realloc             ? __interceptor_realloc(old, size)
+						   : __libc_realloc(old, size);
 }
 
-static void *get_aligned(size_t alignment, size_t size)
+static void *get_aligned(size_t alignment, size_t size, const void *caller)
 {
-	return refuse()                 ? NULL
+	return refuse(caller)           ? NULL
 	       : __interceptor_memalign ? __interceptor_memalign(alignment, size)
 					: __libc_memalign(alignment, size);
 }
 
 void *aligned_alloc(size_t alignment, size_t size)
 {
-	return get_aligned(alignment, size);
+	return get_aligned(alignment, size, __builtin_return_address(0));
 }
 
 int posix_memalign(void **memory, size_t alignment, size_t size)
 {
-	void *got = get_aligned(alignment, size);
+	void *got = get_aligned(alignment, size, __builtin_return_address(0));
 	if (!got)
 		return ENOMEM;
 	*memory = got;
@@ -273,7 +286,7 @@ static void check_messages(const char *text)
 		fail_msg("it failed without a word");
 	for (const char *line = text; *line; line = strchr(line, '\n') + 1)
 		if (strncmp(line, "stdfit: ", 8) != 0 || !strchr(line, '\n'))
-			fail_msg("unexpected message: %s", line);
+			fail_msg("unexpected message in: %s", text);
 }
 
 struct outcome {
