@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "merl.h"
 #include "atomic_file.h"
+#include "regular_file.h"
 #include "text_quote.h"
 #include <endian.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <float.h>
 #include <inttypes.h>
 #include <omp.h>
@@ -90,23 +90,6 @@ static enum status read_failed(struct error *why, int problem)
 {
 	return error_set(why, STATUS_IO, "%s",
 			 problem == FILE_SHORT ? "it shrank while being read" : strerror(problem));
-}
-
-/* Opens a regular file. Without O_NONBLOCK a pipe that nobody writes to would wait here for ever. */
-static enum status open_regular(const char *path, int *fd, struct stat *st, struct error *why)
-{
-	do
-		*fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-	while (*fd < 0 && errno == EINTR);
-	if (*fd < 0 || fstat(*fd, st) != 0)
-		return error_set(why, STATUS_IO, "%s", strerror(errno));
-	if (S_ISDIR(st->st_mode))
-		return error_set(why, STATUS_FORMAT, "expected a MERL file, found a directory");
-	if (!S_ISREG(st->st_mode))
-		return error_set(why, STATUS_FORMAT, "expected a regular file, found a pipe or device");
-	if (st->st_size == 0)
-		return error_set(why, STATUS_FORMAT, "the file is empty");
-	return STATUS_OK;
 }
 
 static bool looks_like_text(const unsigned char *s, size_t length)
@@ -322,7 +305,7 @@ enum status merl_read(const char *path, int threads, struct samples *samples, st
 	int fd;
 
 	*samples = (struct samples){0};
-	enum status status = open_regular(path, &fd, &st, &why);
+	enum status status = regular_file_open(path, "a MERL file", &fd, &st, &why);
 	if (status == STATUS_OK)
 		status = read_open(fd, &st, threads, samples, &why);
 	if (fd >= 0)

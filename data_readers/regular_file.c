@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "regular_file.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum status regular_file_open(const char *path, const char *what, int *fd, struct stat *st, struct error *why)
+{
+	/* Without O_NONBLOCK a pipe that nobody writes to would wait here for ever. */
+	do
+		*fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+	while (*fd < 0 && errno == EINTR);
+	if (*fd < 0 || fstat(*fd, st) != 0)
+		return error_set(why, STATUS_IO, "%s", strerror(errno));
+	if (S_ISDIR(st->st_mode))
+		return error_set(why, STATUS_FORMAT, "expected %s, found a directory", what);
+	if (!S_ISREG(st->st_mode))
+		return error_set(why, STATUS_FORMAT, "expected a regular file, found a pipe or device");
+	if (st->st_size == 0)
+		return error_set(why, STATUS_FORMAT, "the file is empty");
+	return STATUS_OK;
+}
+
+/* Reads up to `size` bytes; *size becomes how many there were. Returns 0 or errno. */
+static int read_bytes(int fd, unsigned char *bytes, size_t *size)
+{
+	size_t done = 0;
+	while (done < *size) {
+		const ssize_t got = read(fd, bytes + done, *size - done);
+		if (got < 0 && errno != EINTR)
+			return errno;
+		if (got == 0)
+			break;
+		done += got > 0 ? (size_t)got : 0;
+	}
+	*size = done;
+	return 0;
+}
+
+enum status regular_file_read(const char *path, const char *what, size_t most, unsigned char **bytes, size_t *size,
+			      struct error *why)
+{
+	struct stat st;
+	int fd;
+	*bytes = NULL;
+	enum status status = regular_file_open(path, what, &fd, &st, why);
+	if (!status && (unsigned long long)st.st_size > most)
+		status = error_set(why, STATUS_FORMAT, "expected at most %zu bytes, found %lld", most,
+				   (long long)st.st_size);
+	if (!status) {
+		*size = (size_t)st.st_size;
+		*bytes = malloc(*size);
+		if (!*bytes)
+			status = error_set(why, STATUS_NO_MEMORY, "%s", status_str(STATUS_NO_MEMORY));
+	}
+	const int problem = status ? 0 : read_bytes(fd, *bytes, size);
+	if (problem) {
+		free(*bytes);
+		*bytes = NULL;
+		status = error_set(why, STATUS_IO, "%s", strerror(problem));
+	}
+	if (fd >= 0)
+		close(fd);
+	return status;
+}
