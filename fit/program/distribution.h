@@ -5,6 +5,7 @@
 
 #include "ellipsoid.h"
 #include "pwl.h"
+#include "sampling.h"
 #include "smith.h"
 
 /* struct distribution_words - the description; empty or NULL: not given. All borrowed. */
@@ -46,10 +47,6 @@ double distribution_visible_pdf(const struct distribution *distribution, struct 
 double distribution_weight(const struct distribution *distribution, enum gaf gaf, struct vec3 wi, struct vec3 m,
 			   double pdf);
 
-/* Which normals are drawn. */
-enum sampling { SAMPLING_VISIBLE, SAMPLING_NDF, SAMPLING_COUNT };
-const char *sampling_name(enum sampling sampling); /* "visible", "ndf" */
-MUST_CHECK enum status sampling_find(const char *name, enum sampling *sampling);
 bool distribution_samples(const struct distribution *distribution, enum sampling sampling);
 struct vec3 distribution_sample(const struct distribution *distribution, enum sampling sampling, struct vec3 wi,
 				double u1, double u2);
