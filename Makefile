@@ -12,6 +12,12 @@ WERROR ?= -Werror
 # Asked once; empty before the set-up has run, when only `setup` is made.
 pkg_cflags := $(shell $(PKG_CONFIG) --cflags $(PKGS) 2>/dev/null)
 pkg_libs := $(shell $(PKG_CONFIG) --libs $(PKGS) 2>/dev/null)
+# Pictures as PNG where libpng is installed; `make PNG=` does without.
+PNG := $(shell $(PKG_CONFIG) --exists libpng 2>/dev/null && echo yes)
+ifneq ($(PNG),)
+pkg_cflags += -DHAVE_LIBPNG $(shell $(PKG_CONFIG) --cflags libpng)
+pkg_libs += $(shell $(PKG_CONFIG) --libs libpng)
+endif
 # make V=1 shows the commands.
 quiet = $(if $(V),,@echo '  $(1)	$@';)
 
@@ -23,7 +29,7 @@ ALL_CFLAGS = -std=c11 -D_GNU_SOURCE $(warnings) $(OPT) -fopenmp $(fpflags) $(add
 LIBS = $(pkg_libs) -lm
 
 # Each uses only those before it.
-folders := src data_readers fit fit/export fit/plot fit/program
+folders := src data_readers fit fit/export fit/plot fit/render fit/program
 lib_sources := $(filter-out fit/program/main.c,$(foreach folder,$(folders),$(wildcard $(folder)/*.c)))
 lib_objects := $(lib_sources:%.c=$(BUILD)/%.o)
 

@@ -200,7 +200,7 @@ static void wait_a_tick(struct run *run)
 static bool hand_on(struct run *run, size_t *n_failed)
 {
 	const struct batch *batch = run->batch;
-	struct progress progress = progress_start(batch->n, batch->options->quiet);
+	struct progress progress = progress_start(batch->n, "files", batch->options->quiet);
 	bool stopped = false;
 	size_t next = 0;
 	pthread_mutex_lock(&run->lock);

@@ -2,6 +2,7 @@
 /* stdfit compare - the NDFs side by side: errors per material, and what they come to in all. */
 #include "batch.h"
 #include "report.h"
+#include "row_pictures.h"
 #include "store.h"
 #include "text_quote.h"
 
@@ -9,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Columns: material, one error per NDF, winner, gains, distances from the floor. */
-enum { MOST_VALUES = 2 * FIT_NDFS_MAX + 2, COLUMNS_MAX = MOST_VALUES + 2, NAME_SIZE = 64 };
+/* Columns: material, one error per NDF, winner, gains, distances from the floor, errors of pictures. */
+enum { MOST_VALUES = 4 * FIT_NDFS_MAX + 2, COLUMNS_MAX = MOST_VALUES + 2, NAME_SIZE = 64 };
 
 /* A column that follows from two errors: how much lower that of `of` is than that of `over`, or, above the floor, how
  * much higher; percent of the latter. */
@@ -22,12 +23,17 @@ struct relation {
 struct comparison {
 	int n_ndf;
 	const char *ndf[FIT_NDFS_MAX]; /* names, borrowed from the rows */
-	int n_relations, n_values;     /* n_values: the errors and these */
+	int n_relations;
+	bool pictures;
+	int n_values; /* the errors, these, and per NDF delta E and SSIM of its picture if there are pictures */
 	struct relation relation[FIT_NDFS_MAX + 2];
 	char column_name[MOST_VALUES][NAME_SIZE];
 	struct csv_column column[COLUMNS_MAX];
-	double *value[MOST_VALUES]; /* per NDF its errors, then the relations; one per material, NaN = none */
+	double *value[MOST_VALUES]; /* column by column; one per material, NaN = none */
 	size_t n_materials;
+	const struct options *options;
+	struct environment light; /* of the pictures */
+	size_t n_failed;          /* materials without pictures */
 	int wins[FIT_NDFS_MAX], ties;
 	struct csv_table table;
 };
@@ -65,7 +71,29 @@ static void set_relations(struct comparison *c)
 	for (int i = 0; i < c->n_ndf && ndf_place(c, floor_ndf) >= 0; i++)
 		if (strcmp(c->ndf[i], floor_ndf))
 			c->relation[c->n_relations++] = (struct relation){c->ndf[i], floor_ndf, true};
-	c->n_values = c->n_ndf + c->n_relations;
+	c->n_values = c->n_ndf + c->n_relations + (c->pictures ? 2 * c->n_ndf : 0);
+}
+
+/* The first of the columns of pictures: delta E of each NDF, then SSIM. */
+static int first_picture(const struct comparison *c)
+{
+	return c->n_ndf + c->n_relations;
+}
+
+static void name_column(struct comparison *c, int i, char name[NAME_SIZE])
+{
+	const int picture = i - first_picture(c);
+	const struct relation *r = &c->relation[i >= c->n_ndf && picture < 0 ? i - c->n_ndf : 0];
+	if (i < c->n_ndf)
+		snprintf(name, NAME_SIZE, "error_%s", c->ndf[i]);
+	else if (picture >= c->n_ndf)
+		snprintf(name, NAME_SIZE, "ssim_%s", c->ndf[picture - c->n_ndf]);
+	else if (picture >= 0)
+		snprintf(name, NAME_SIZE, "delta_e_%s", c->ndf[picture]);
+	else if (r->above)
+		snprintf(name, NAME_SIZE, "%s_above_%s", r->of, r->over);
+	else
+		snprintf(name, NAME_SIZE, "gain_over_%s", r->over);
 }
 
 static enum status name_columns(struct comparison *c, size_t n_rows)
@@ -73,15 +101,9 @@ static enum status name_columns(struct comparison *c, size_t n_rows)
 	int n = 0;
 	c->column[n++] = (struct csv_column){"material", false};
 	for (int i = 0; i < c->n_values; i++) {
-		const struct relation *r = i < c->n_ndf ? NULL : &c->relation[i - c->n_ndf];
 		if (i == c->n_ndf)
 			c->column[n++] = (struct csv_column){"winner", false};
-		if (!r)
-			snprintf(c->column_name[i], NAME_SIZE, "error_%s", c->ndf[i]);
-		else if (r->above)
-			snprintf(c->column_name[i], NAME_SIZE, "%s_above_%s", r->of, r->over);
-		else
-			snprintf(c->column_name[i], NAME_SIZE, "gain_over_%s", r->over);
+		name_column(c, i, c->column_name[i]);
 		c->column[n++] = (struct csv_column){c->column_name[i], true};
 	}
 	c->table = csv_table_make(c->column, n);
@@ -137,6 +159,27 @@ static double find_relation(const struct comparison *c, const double *error, con
 	return r->above ? 100 * (error[of] / error[over] - 1) : 100 * (1 - error[of] / error[over]);
 }
 
+/* Numbers for the columns of pictures. What cannot be rendered is told and left empty. */
+static void add_pictures(struct comparison *c, char **const *rows, size_t n, double *number)
+{
+	struct picture_error *errors = calloc(n, sizeof *errors);
+	struct error error = {"out of memory"};
+	const int first = first_picture(c);
+	for (int i = 0; i < 2 * c->n_ndf; i++)
+		number[first + i] = NAN;
+	const enum status status =
+		errors ? row_pictures_errors(rows, n, &c->options->fit, &c->light, errors, &error) : STATUS_NO_MEMORY;
+	for (size_t i = 0; i < n && errors; i++) {
+		const int ndf = ndf_place(c, rows[i][RESULT_NDF]);
+		number[first + ndf] = errors[i].delta_e;
+		number[first + c->n_ndf + ndf] = errors[i].ssim;
+	}
+	free(errors);
+	if (status && status != STATUS_INTERRUPTED)
+		report_error("%s", error.text);
+	c->n_failed += status != STATUS_OK;
+}
+
 /* Adds the line of rows[0 .. n-1], which are of one material. */
 static enum status add_material(struct comparison *c, char **const *rows, size_t n)
 {
@@ -147,6 +190,8 @@ static enum status add_material(struct comparison *c, char **const *rows, size_t
 		number[ndf_place(c, rows[i][RESULT_NDF])] = result_number(rows[i], RESULT_ERROR);
 	for (int r = 0; r < c->n_relations; r++)
 		number[c->n_ndf + r] = find_relation(c, number, &c->relation[r]);
+	if (c->pictures)
+		add_pictures(c, rows, n, number);
 	for (int i = 0; i < c->n_values; i++)
 		c->value[i][c->n_materials] = number[i];
 	c->n_materials++;
@@ -169,11 +214,20 @@ static enum status add_materials(struct comparison *c, struct csv_table *rows)
 				break;
 		if (add_material(c, rows->row + start, end - start))
 			return STATUS_NO_MEMORY;
+		if (c->pictures && *c->options->cancel)
+			return STATUS_INTERRUPTED;
 	}
 	return STATUS_OK;
 }
 
-/* Mean, median and worst of each value column; of gains the smallest is the worst. */
+/* Whether the smallest value of a column is the worst: so it is of gains and of SSIM. */
+static bool worst_is_least(const struct comparison *c, int i)
+{
+	const int picture = i - first_picture(c);
+	return picture >= 0 ? picture >= c->n_ndf : i >= c->n_ndf && !c->relation[i - c->n_ndf].above;
+}
+
+/* Mean, median and worst of each value column. */
 static enum status add_summary(struct comparison *c)
 {
 	double mean[MOST_VALUES] = {0}, median[MOST_VALUES] = {0}, worst[MOST_VALUES] = {0}, wins[MOST_VALUES] = {0};
@@ -183,10 +237,10 @@ static enum status add_summary(struct comparison *c)
 		for (size_t m = 0; m < c->n_materials; m++)
 			if (!isnan(x[m]))
 				x[n++] = x[m];
-		const bool error = i < c->n_ndf, gain = !error && !c->relation[i - c->n_ndf].above;
+		const bool error = i < c->n_ndf;
 		wins[i] = error ? (double)c->wins[i] : (double)NAN;
 		mean[i] = n ? gsl_stats_mean(x, 1, n) : NAN;
-		worst[i] = !n ? NAN : gain ? gsl_stats_min(x, 1, n) : gsl_stats_max(x, 1, n);
+		worst[i] = !n ? NAN : worst_is_least(c, i) ? gsl_stats_min(x, 1, n) : gsl_stats_max(x, 1, n);
 		median[i] = n ? gsl_stats_median(x, 1, n) : NAN;
 	}
 	char ties[NAME_SIZE];
@@ -201,6 +255,7 @@ static void comparison_free(struct comparison *c)
 {
 	for (int i = 0; i < c->n_values; i++)
 		free(c->value[i]);
+	environment_free(&c->light);
 	csv_table_free(&c->table);
 }
 
@@ -212,20 +267,35 @@ static enum status write_output(const struct options *options, const struct csv_
 	return store_write(options->output, table, options->json ? report_json : report_csv, error);
 }
 
-/* Compares the rows, which get reordered, and writes the outcome. */
-static enum status compare(const struct options *options, struct csv_table *rows, struct error *error)
+static enum status fill_table(struct comparison *c, struct csv_table *rows, struct error *error)
 {
-	struct comparison c = {.n_ndf = 0};
-	enum status status = collect_ndfs(&c, rows, error);
-	if (!status) {
-		set_relations(&c);
-		if (name_columns(&c, rows->n_rows) || add_materials(&c, rows) || add_summary(&c))
-			status = error_set(error, STATUS_NO_MEMORY, "out of memory");
-		else
-			status = write_output(options, &c.table, error);
-	}
+	enum status status = c->pictures ? environment_named("studio", &c->light) : STATUS_OK;
+	set_relations(c);
+	if (!status)
+		status = name_columns(c, rows->n_rows);
+	if (!status)
+		status = add_materials(c, rows);
+	if (!status)
+		status = add_summary(c);
+	return status ? error_set(error, status, "%s", status_str(status)) : STATUS_OK;
+}
+
+/* Compares the rows, which get reordered, and writes the outcome. Returns the exit code. */
+static int compare(const struct options *options, struct csv_table *rows)
+{
+	struct comparison c = {.options = options, .pictures = options->pictures};
+	struct error error;
+	enum status status = collect_ndfs(&c, rows, &error);
+	if (!status)
+		status = fill_table(&c, rows, &error);
+	if (!status)
+		status = write_output(options, &c.table, &error);
+	if (status && status != STATUS_INTERRUPTED)
+		report_error("%s", error.text);
 	comparison_free(&c);
-	return status;
+	if (status == STATUS_INTERRUPTED)
+		return EXIT_INTERRUPTED;
+	return status || c.n_failed ? EXIT_FAILED : EXIT_DONE;
 }
 
 /* Rows that can be compared were made with the same options. */
@@ -246,8 +316,10 @@ static int compare_table(const struct options *options)
 {
 	struct error error;
 	struct csv_table rows = csv_table_make(result_columns, RESULT_COLUMNS);
-	static const char *const useful[] = {"output", "json", "table", NULL};
+	static const char *const useful[] = {"output", "json", "table", "pictures", "threads", NULL};
 	const char *path = options->path[0], *ignored = options_given_beside(options, useful);
+	if (!ignored && !options->pictures && options_given(options, "threads"))
+		ignored = "threads";
 	if (ignored)
 		return options_usage(COMMAND_COMPARE, "--%s means nothing for a table that is there already", ignored);
 	if (options->n_paths > 1)
@@ -256,12 +328,11 @@ static int compare_table(const struct options *options)
 	enum status status = csv_table_read(&rows, path, RESULT_ERROR + 1, NULL, &error);
 	if (!status)
 		status = check_rows(&rows, path, &error);
-	if (!status)
-		status = compare(options, &rows, &error);
 	if (status)
 		report_error("%s", error.text);
+	const int code = status ? EXIT_FAILED : compare(options, &rows);
 	csv_table_free(&rows);
-	return status ? EXIT_FAILED : EXIT_DONE;
+	return code;
 }
 
 /* Fits, then compares what came out. */
@@ -284,13 +355,14 @@ static int compare_fits(const struct options *options)
 	for (size_t i = 0; i < batch.n && !status; i++)
 		if (csv_table_move(&rows, &batch.file[i].rows))
 			status = error_set(&error, STATUS_NO_MEMORY, "out of memory");
-	if (!status && rows.n_rows && code != EXIT_INTERRUPTED)
-		status = compare(options, &rows, &error);
 	if (status)
 		report_error("%s", error.text);
+	const int compared = !status && rows.n_rows && code != EXIT_INTERRUPTED ? compare(options, &rows) : EXIT_DONE;
 	csv_table_free(&rows);
 	batch_free(&batch);
 	files_free(&files);
+	if (compared != EXIT_DONE)
+		return compared;
 	return code == EXIT_DONE && (bad || status) ? EXIT_FAILED : code;
 }
 

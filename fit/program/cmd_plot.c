@@ -59,7 +59,7 @@ static void plot_all(struct plotting *p, const struct materials *materials)
 		status = draw(p, p->options->output, name, 1, &error);
 	if (status)
 		fail(p, status, &error);
-	p->progress = progress_start(materials->n, p->options->quiet);
+	p->progress = progress_start(materials->n, "materials", p->options->quiet);
 	for (size_t i = 0; i < materials->n && !*p->options->cancel; i++) {
 		progress_draw(&p->progress);
 		plot_one(p, &materials->material[i]);

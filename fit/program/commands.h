@@ -25,6 +25,7 @@ enum command {
 	COMMAND_NDF,
 	COMMAND_SAMPLE,
 	COMMAND_PLOT,
+	COMMAND_RENDER,
 	COMMAND_REPORT,
 	COMMAND_COUNT
 };
@@ -41,6 +42,7 @@ int cmd_ndf(int argc, char **argv, atomic_bool *cancel);
 int cmd_sample(int argc, char **argv, atomic_bool *cancel);
 int cmd_synth(int argc, char **argv, atomic_bool *cancel);
 int cmd_plot(int argc, char **argv, atomic_bool *cancel);
+int cmd_render(int argc, char **argv, atomic_bool *cancel);
 int cmd_report(int argc, char **argv, atomic_bool *cancel);
 
 #endif

@@ -20,13 +20,14 @@
 #define NDF (1u << COMMAND_NDF)
 #define SAMPLE (1u << COMMAND_SAMPLE)
 #define PLOT (1u << COMMAND_PLOT)
+#define RENDER (1u << COMMAND_RENDER)
 #define REPORT (1u << COMMAND_REPORT)
 #define DRAWS (PLOT | REPORT)
 #define FITS (FIT | COMPARE | DRAWS)
 #define SEARCHES (FITS | BENCH)
 #define TABLES (FIT | COMPARE | BENCH)
 #define MODEL (EVAL | SYNTH)
-#define SOURCES EXPORT /* a fit, a row or given parameters: model_source.h */
+#define SOURCES (EXPORT | RENDER) /* a fit, a row or given parameters: model_source.h */
 #define AT(member) offsetof(struct options, member)
 
 const struct option_spec option_specs[] = {
@@ -39,22 +40,22 @@ const struct option_spec option_specs[] = {
 	{"format", 0, KIND_FORMAT, EXPORT, NOT_RECORDED, "NAME", "what to write", AT(format), 0, 0},
 	{"output", 'o', KIND_TEXT, DRAWS, NOT_RECORDED, "DIR", "the directory to write to; made if it is not there",
 	 AT(output), 0, 0},
-	{"json", 0, KIND_ON, TABLES | MERGE | EVAL | INFO | NDF | SAMPLE, NOT_RECORDED, NULL, "JSON instead of CSV", AT(json), 0, 0},
-	{"table", 0, KIND_ON, TABLES | MERGE | EVAL | INFO | NDF | SAMPLE, NOT_RECORDED, NULL,
+	{"json", 0, KIND_ON, TABLES | MERGE | EVAL | INFO | NDF | SAMPLE | RENDER, NOT_RECORDED, NULL, "JSON instead of CSV", AT(json), 0, 0},
+	{"table", 0, KIND_ON, TABLES | MERGE | EVAL | INFO | NDF | SAMPLE | RENDER, NOT_RECORDED, NULL,
 	 "a readable table on standard output even if that is no terminal", AT(readable), 0, 0},
 	{"resume", 0, KIND_ON, FIT, NOT_RECORDED, NULL,
 	 "keep the rows of -o FILE that were made from the same bytes with the same options", AT(resume), 0, 0},
 	{"shard", 0, KIND_SHARD, FIT, NOT_RECORDED, "I/N",
 	 "fit only share I of N of the files: of their sorted list every N-th, beginning with the I-th", AT(shard), 1,
 	 100000},
-	{"recursive", 'r', KIND_ON, FITS | MERGE, NOT_RECORDED, NULL, "directories: take the files below them too",
+	{"recursive", 'r', KIND_ON, FITS | MERGE | RENDER, NOT_RECORDED, NULL, "directories: take the files below them too",
 	 AT(recursive), 0, 0},
-	{"quiet", 'q', KIND_ON, SEARCHES, NOT_RECORDED, NULL, "no progress line, no summary", AT(quiet), 0, 0},
+	{"quiet", 'q', KIND_ON, SEARCHES | RENDER, NOT_RECORDED, NULL, "no progress line, no summary", AT(quiet), 0, 0},
 	{"quiet", 'q', KIND_ON, EXPORT, NOT_RECORDED, NULL, "no words but errors", AT(quiet), 0, 0},
 	{"threads", 0, KIND_INT, SEARCHES | MODEL | SOURCES, NOT_RECORDED, "N", "threads; changes no result", AT(fit.threads), 1,
 	 1024},
-	{"ndf", 0, KIND_NDFS, FITS, RECORDED_WITHIN, "LIST", "NDFs to fit, separated by commas", AT(fit.ndf), 0, 0},
-	{"ndf", 0, KIND_NDFS, MODEL | BENCH | SOURCES, NOT_RECORDED, "NAME", "NDF of the model", AT(fit.ndf), 0, 0},
+	{"ndf", 0, KIND_NDFS, FITS | RENDER, RECORDED_WITHIN, "LIST", "NDFs to fit, separated by commas", AT(fit.ndf), 0, 0},
+	{"ndf", 0, KIND_NDFS, MODEL | BENCH | EXPORT, NOT_RECORDED, "NAME", "NDF of the model", AT(fit.ndf), 0, 0},
 	{"gaf", 0, KIND_GAF, SEARCHES | MODEL | SOURCES | NDF | SAMPLE, RECORDED, "NAME", "masking and shadowing G", AT(fit.gaf), 0, 0},
 	{"lambda", 0, KIND_LAMBDA, SEARCHES | MODEL | SOURCES | NDF | SAMPLE, RECORDED, "FORM",
 	 "form of Lambda of STD and its family; other NDFs have the exact one only", AT(fit.lambda), 0, 0},
@@ -136,6 +137,27 @@ const struct option_spec option_specs[] = {
 	 "which normals; with --theta-i the visible ones where the NDF can, else all", AT(sampling), 0, 0},
 	{"count", 0, KIND_INT, SAMPLE, NOT_RECORDED, "N", "how many", AT(count), 1, 1000000},
 	{"seed", 0, KIND_SEED, SAMPLE, NOT_RECORDED, "N", "seed of the random numbers", AT(fit.seed), 0, 0},
+	{"pictures", 0, KIND_ON, COMPARE, NOT_RECORDED, NULL,
+	 "render each model and its measured table, too, and show delta E and SSIM of the pictures", AT(pictures), 0, 0},
+	{"output", 'o', KIND_TEXT, RENDER, NOT_RECORDED, "FILE", "the picture: FILE.png (sRGB) or FILE.pfm (linear)",
+	 AT(picture), 0, 0},
+	{"environment", 'e', KIND_TEXT, RENDER, NOT_RECORDED, "NAME",
+	 "studio, sky or lights, or a map of latitude and longitude, FILE.hdr or FILE.pfm (default: studio)",
+	 AT(environment), 0, 0},
+	{"light", 0, KIND_TEXT, RENDER, NOT_RECORDED, "X,Y,Z[,E][;...]",
+	 "point lights in these directions (x right, y up, z to the viewer), of irradiance E (pi), instead of the default "
+	 "environment or beside the one that is given",
+	 AT(light), 0, 0},
+	{"exposure", 0, KIND_NUMBER, RENDER, NOT_RECORDED, "STOPS", "the light times 2^STOPS", AT(exposure), -20, 20},
+	{"size", 0, KIND_INT, RENDER, NOT_RECORDED, "N", "width and height of a sphere's picture, pixels", AT(size), 8,
+	 4096},
+	{"samples", 0, KIND_INT, RENDER, NOT_RECORDED, "N", "samples per pixel, best a power of two", AT(pixel_samples), 1,
+	 65536},
+	{"sampling", 0, KIND_SAMPLING, RENDER, NOT_RECORDED, "NAME", "normals by which directions are sampled",
+	 AT(sampling), 0, 0},
+	{"seed", 0, KIND_SEED, RENDER, NOT_RECORDED, "N", "seed of the samples", AT(fit.seed), 0, 0},
+	{"difference", 0, KIND_ON, RENDER, NOT_RECORDED, NULL,
+	 "show differences in false colours for several materials, too", AT(difference), 0, 0},
 	{NULL, 0, KIND_ON, 0, NOT_RECORDED, NULL, NULL, 0, 0, 0},
 };
 

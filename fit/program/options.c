@@ -67,6 +67,13 @@ static const struct command_text commands[COMMAND_COUNT] = {
 	[COMMAND_SYNTH] = {"synth", "OUT.binary", "write a MERL file of a model",
 			   "Writes the table that an ideal measurement of the model would give; -1 below the\n"
 			   "horizon.\n"},
+	[COMMAND_RENDER] =
+		{"render", "PATH...", "spheres of measured materials beside those of their models, as PNG",
+		 "Renders a sphere of each measured table and of each model of it in the same light, one row a\n"
+		 "material, with their differences in false colours if there is one material only. The models\n"
+		 "are fitted, taken from a result table (--from, or FILE.csv as the only path: the files it\n"
+		 "names), or given (--kd, --ks, ...). Reports how different model and table look: rmse of linear\n"
+		 "values, delta_e the mean CIEDE2000, ssim the structural similarity.\n"},
 	[COMMAND_PLOT] = {"plot", "PATH...", "fits, or the course of searches, as plots by gnuplot",
 			  "Takes a result table (FILE.csv), or fits MERL files or directories. Writes into the directory\n"
 			  "of -o the errors of all materials, sorted; and per material D and G1 of each fit against the\n"
@@ -193,6 +200,9 @@ struct options options_default(enum command command)
 		.count = 1000,
 		.ks = {0, 0, 0},
 		.kd = {0, 0, 0},
+		.environment = "studio",
+		.size = 256,
+		.pixel_samples = 32,
 	};
 	if (command == COMMAND_EVAL || command == COMMAND_SYNTH) {
 		options.fit.n_ndf = 1;

@@ -9,6 +9,7 @@
 #include "export.h"
 #include "files.h"
 #include "report.h"
+#include "sampling.h"
 
 enum { OPTIONS_MAX = 128 }; /* rows of the option table, at most */
 
@@ -29,7 +30,7 @@ struct options {
 	const char *sigma_words, *gamma_words, *params;
 	const char *theta, *phi; /* lists of angles: angles.h */
 	double theta_i;          /* degrees; NaN: not given */
-	enum sampling sampling;
+	enum sampling sampling;  /* and for render */
 	int count;
 	int n_phi_d;
 	double noise;
@@ -37,6 +38,14 @@ struct options {
 	const struct algorithm *algorithm[ALGORITHM_COUNT];
 	int n_algorithms;
 	bool forms; /* bench: the forms of Lambda, not algorithms */
+	/* Pictures. */
+	const char *picture;     /* file to render into; NULL: none */
+	const char *environment; /* a built-in one's name or a file */
+	const char *light;       /* point lights, X,Y,Z[,E];...; NULL: none */
+	double exposure;         /* stops */
+	int size, pixel_samples;
+	bool difference;
+	bool pictures; /* compare: columns of pictures */
 	atomic_bool *cancel;
 	char **path; /* what is no option, in the order given */
 	int n_paths;

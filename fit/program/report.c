@@ -206,10 +206,11 @@ void report_fits(FILE *file, const struct csv_table *results, bool heading)
 
 /* Progress */
 
-struct progress progress_start(size_t n, bool quiet)
+struct progress progress_start(size_t n, const char *unit, bool quiet)
 {
 	const double now = search_clock();
-	return (struct progress){.shown = !quiet && n > 1 && isatty(STDERR_FILENO), .n = n, .start = now};
+	return (struct progress){
+		.shown = !quiet && n > 1 && isatty(STDERR_FILENO), .n = n, .unit = unit, .start = now};
 }
 
 void progress_draw(struct progress *progress)
@@ -218,10 +219,10 @@ void progress_draw(struct progress *progress)
 	if (!progress->shown || now - progress->drawn < 1.0 / 6)
 		return;
 	progress->drawn = now;
-	fprintf(stderr, "\r%zu of %zu files", progress->done, progress->n);
+	fprintf(stderr, "\r%zu of %zu %s", progress->done, progress->n, progress->unit);
 	if (progress->done) {
-		const double per_file = (now - progress->start) / (double)progress->done;
-		const long left = lrint(per_file * (double)(progress->n - progress->done));
+		const double each = (now - progress->start) / (double)progress->done;
+		const long left = lrint(each * (double)(progress->n - progress->done));
 		fprintf(stderr, ", %ld:%02ld left", left / 60, left % 60);
 	}
 	fputs("\033[K", stderr);

@@ -25,14 +25,15 @@ void report_output(const struct csv_table *table, enum show show,
 /* report_fits - the fitted rows (of result.h) of one file; a heading too if asked for. */
 void report_fits(FILE *file, const struct csv_table *results, bool heading);
 
-/* The progress line of a batch, on standard error. */
+/* The progress line of a long work, on standard error. */
 struct progress {
 	bool shown; /* there is one: standard error is a terminal, and nobody asked for quiet */
 	size_t done, n;
+	const char *unit;     /* what they are, "files" */
 	double start, drawn; /* seconds; when the batch began, when the line was last drawn */
 };
 
-struct progress progress_start(size_t n, bool quiet);
+struct progress progress_start(size_t n, const char *unit, bool quiet);
 /* progress_draw - draws the line anew, at most six times a second. */
 void progress_draw(struct progress *progress);
 /* progress_erase - clears the line so that something else can be written. */

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "measured.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static float *entry_at(const struct measured *m, int i, int j, int k)
+{
+	return m->value + SAMPLES_CHANNELS * (size_t)(k + m->n_phi_d * (j + SAMPLES_THETA_D * i));
+}
+
+static void fill_row(struct measured *m, const struct samples *samples, int i, int j)
+{
+	for (int k = 0; k < m->n_phi_d; k++) {
+		const size_t at = (size_t)(k + m->n_phi_d * (j + SAMPLES_THETA_D * i));
+		float *entry = entry_at(m, i, j, k);
+		if (!isnan(samples->value[0][at]))
+			for (int c = 0; c < SAMPLES_CHANNELS; c++)
+				entry[c] = samples->value[c][at];
+		else if (i || j)
+			memcpy(entry, j ? entry_at(m, i, j - 1, k) : entry_at(m, i - 1, j, k),
+			       SAMPLES_CHANNELS * sizeof *entry);
+	}
+}
+
+enum status measured_init(struct measured *m, const struct samples *samples, enum bins bins)
+{
+	*m = (struct measured){.bins = bins,
+			       .n_phi_d = samples->n_phi_d,
+			       .value = calloc(samples_count(samples), SAMPLES_CHANNELS * sizeof(float))};
+	if (!m->value)
+		return STATUS_NO_MEMORY;
+	for (int i = 0; i < SAMPLES_THETA_H; i++)
+		for (int j = 0; j < SAMPLES_THETA_D; j++)
+			fill_row(m, samples, i, j);
+	return STATUS_OK;
+}
+
+void measured_free(struct measured *m)
+{
+	free(m->value);
+	*m = (struct measured){0};
+}
+
+/* The entries on either side of a place, and the share of the second. */
+struct bracket {
+	int low, high;
+	double share;
+};
+
+static struct bracket bracket_clamped(double at, int n)
+{
+	const double inside = fmin(fmax(at, 0), n - 1);
+	const int low = inside < n - 1 ? (int)inside : n - 2;
+	return (struct bracket){low, low + 1, inside - low};
+}
+
+static struct bracket bracket_around(double at, int n)
+{
+	const double low = floor(at);
+	const int index = (int)low % n;
+	const int positive = index < 0 ? index + n : index;
+	return (struct bracket){positive, positive + 1 < n ? positive + 1 : 0, at - low};
+}
+
+void measured_f(const struct measured *m, struct vec3 wi, struct vec3 wo, double f[3])
+{
+	f[0] = f[1] = f[2] = 0;
+	if (!(wi.z > 0 && wo.z > 0))
+		return;
+	const struct halfdiff angles = halfdiff_from_dirs(wi, wo);
+	const double degrees = 180 / M_PI, offset = m->bins == BINS_CENTRE ? 0.5 : 0;
+	const struct bracket h = bracket_clamped(sqrt(90 * degrees * angles.theta_h) - offset, SAMPLES_THETA_H);
+	const struct bracket d = bracket_clamped(degrees * angles.theta_d - offset, SAMPLES_THETA_D);
+	const struct bracket phi = bracket_around(degrees * angles.phi_d - offset, m->n_phi_d);
+	for (int corner = 0; corner < 8; corner++) {
+		const double weight = (corner & 1 ? h.share : 1 - h.share) * (corner & 2 ? d.share : 1 - d.share) *
+				      (corner & 4 ? phi.share : 1 - phi.share);
+		const float *entry = entry_at(m, corner & 1 ? h.high : h.low, corner & 2 ? d.high : d.low,
+					      corner & 4 ? phi.high : phi.low);
+		for (int c = 0; c < SAMPLES_CHANNELS; c++)
+			f[c] += weight * (double)entry[c];
+	}
+}

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pictures.h"
+#include <stdlib.h>
+
+static enum status render(const struct cook_torrance *model, const struct measured *measured, enum sampling sampling,
+			  const struct environment *environment, const struct sphere_options *options,
+			  struct sphere *sphere)
+{
+	struct surface surface;
+	enum status status = surface_init(&surface, model, measured, sampling);
+	if (!status)
+		status = sphere_render(&surface, environment, options, sphere);
+	surface_free(&surface);
+	return status;
+}
+
+static const struct cook_torrance *best_of(const struct pictures_model *model, int n)
+{
+	int best = 0;
+	for (int i = 1; i < n; i++)
+		if (model[i].error < model[best].error)
+			best = i;
+	return model[best].model;
+}
+
+enum status pictures_render(const struct samples *samples, enum bins bins, const struct pictures_model *model, int n,
+			    enum sampling sampling, const struct environment *environment,
+			    const struct sphere_options *options, struct pictures *p)
+{
+	struct measured measured;
+	*p = (struct pictures){
+		.n = n, .sphere = calloc((size_t)n, sizeof *p->sphere), .error = calloc((size_t)n, sizeof *p->error)};
+	enum status status = p->sphere && p->error ? STATUS_OK : STATUS_NO_MEMORY;
+	if (!status)
+		status = measured_init(&measured, samples, bins);
+	if (!status) {
+		status = render(best_of(model, n), &measured, sampling, environment, options, &p->measured);
+		measured_free(&measured);
+	}
+	for (int i = 0; i < n && !status; i++) {
+		status = render(model[i].model, NULL, sampling, environment, options, &p->sphere[i]);
+		if (!status)
+			status = picture_error_compute(&p->sphere[i], &p->measured, &p->error[i]);
+	}
+	if (status)
+		pictures_free(p);
+	return status;
+}
+
+void pictures_free(struct pictures *p)
+{
+	sphere_free(&p->measured);
+	for (int i = 0; p->sphere && i < p->n; i++)
+		sphere_free(&p->sphere[i]);
+	free(p->sphere);
+	free(p->error);
+	*p = (struct pictures){0};
+}

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* sheet - spheres side by side in one picture: a row a material, a column for the measured table and each model. */
+#ifndef SHEET_H
+#define SHEET_H
+
+#include "picture_error.h"
+
+struct sheet {
+	struct image image; /* linear; owned */
+	int size;           /* of a sphere */
+	int scale;          /* pixels a dot of the labels */
+	int columns, rows;
+	bool differences; /* below each row of spheres stands one of their differences from the first of the row */
+};
+
+/* SHEET_DELTA_E - the difference at which the false colours end. */
+#define SHEET_DELTA_E 10.0
+
+/* sheet_init - an empty sheet. STATUS_DOMAIN where it would be larger than a picture can be; STATUS_NO_MEMORY. */
+MUST_CHECK enum status sheet_init(struct sheet *sheet, int size, int columns, int rows, bool differences);
+void sheet_free(struct sheet *sheet);
+
+/* sheet_title - writes what a column shows at its top. */
+void sheet_title(struct sheet *sheet, int column, const char *title);
+/* sheet_sphere - draws a sphere, with a label above it. */
+void sheet_sphere(struct sheet *sheet, int column, int row, const struct sphere *sphere, const char *label);
+/* sheet_difference - draws below a sphere how far it is from `from`, CIEDE2000 in false colours. */
+void sheet_difference(struct sheet *sheet, int column, int row, const struct sphere *sphere, const struct sphere *from);
+/* sheet_legend - draws below the first sphere of a row what the false colours mean. */
+void sheet_legend(struct sheet *sheet, int row);
+
+#endif

@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "sphere.h"
+#include <gsl/gsl_qrng.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* The numbers of a sample: place in the pixel, light, surface. */
+enum { AT_PIXEL = 0, AT_LIGHT = 2, AT_SURFACE = 4, DIMENSIONS = 7 };
+
+#define MARGIN 0.02
+
+struct scene {
+	const struct surface *surface;
+	const struct environment *environment;
+	const struct sphere_options *options;
+	double (*point)[DIMENSIONS]; /* per sample, before the pixel's shift */
+};
+
+/* Splitmix64's mixing of bits. */
+static uint64_t mix(uint64_t x)
+{
+	x += 0x9e3779b97f4a7c15u;
+	x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+	x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+	return x ^ (x >> 31);
+}
+
+static void pixel_shift(uint64_t seed, int x, int y, double shift[DIMENSIONS])
+{
+	uint64_t state = mix(mix(seed) ^ ((uint64_t)y << 32 | (uint64_t)x));
+	for (int d = 0; d < DIMENSIONS; d++) {
+		state = mix(state);
+		shift[d] = (double)(state >> 11) * 0x1p-53;
+	}
+}
+
+/* The first points of the sequence, the origin among them, which GSL leaves out. */
+static enum status fill_points(struct scene *scene, int n)
+{
+	gsl_qrng *sobol = gsl_qrng_alloc(gsl_qrng_sobol, DIMENSIONS);
+	scene->point = calloc((size_t)n, sizeof *scene->point);
+	for (int i = 1; i < n && sobol && scene->point; i++)
+		gsl_qrng_get(sobol, scene->point[i]);
+	if (sobol)
+		gsl_qrng_free(sobol);
+	return sobol && scene->point ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+/* A direction in space as seen from a frame whose z is the normal, and back. */
+struct frame {
+	struct vec3 x, y, z;
+};
+
+/* Materials are isotropic: any x and y will do. */
+static struct frame frame_of(struct vec3 n)
+{
+	const struct vec3 aside = fabs(n.y) < 0.9 ? (struct vec3){0, 1, 0} : (struct vec3){1, 0, 0};
+	const struct vec3 x = vec3_unit(vec3_sub(aside, vec3_scale(n, vec3_dot(aside, n))));
+	const struct vec3 y = {n.y * x.z - n.z * x.y, n.z * x.x - n.x * x.z, n.x * x.y - n.y * x.x};
+	return (struct frame){x, y, n};
+}
+
+static struct vec3 to_frame(const struct frame *frame, struct vec3 w)
+{
+	return (struct vec3){vec3_dot(frame->x, w), vec3_dot(frame->y, w), vec3_dot(frame->z, w)};
+}
+
+static struct vec3 from_frame(const struct frame *frame, struct vec3 w)
+{
+	return vec3_add(vec3_add(vec3_scale(frame->x, w.x), vec3_scale(frame->y, w.y)), vec3_scale(frame->z, w.z));
+}
+
+/* A point of the surface, seen. */
+struct point {
+	struct frame frame;
+	struct view view;
+};
+
+static void add_light(const double f[3], const double light[3], double weight, double sum[3])
+{
+	for (int c = 0; c < 3; c++)
+		sum[c] += weight * f[c] * light[c];
+}
+
+static void add_point_lights(const struct scene *scene, const struct point *at, double sum[3])
+{
+	for (int i = 0; i < scene->environment->n_lights; i++) {
+		const struct light *light = &scene->environment->light[i];
+		const struct vec3 wi = to_frame(&at->frame, light->to);
+		double f[3];
+		surface_f(scene->surface, &at->view, wi, f);
+		add_light(f, light->irradiance, wi.z, sum);
+	}
+}
+
+/* 1/p times the weight of a sample that was drawn with density p, and could have been with density q. */
+static double weight_of(enum estimator estimator, double p, double q)
+{
+	if (estimator != ESTIMATE_BOTH)
+		return 1 / p;
+	const double ratio = q / p;
+	return 1 / (p * (1 + ratio * ratio));
+}
+
+static void add_map_light(const struct scene *scene, const struct point *at, const double u[DIMENSIONS], double sum[3])
+{
+	const enum estimator estimator = scene->options->estimator;
+	const struct environment *environment = scene->environment;
+	double f[3];
+	if (estimator != ESTIMATE_SURFACE) {
+		const struct vec3 to = environment_sample(environment, u[AT_LIGHT], u[AT_LIGHT + 1]);
+		const struct vec3 wi = to_frame(&at->frame, to);
+		const double pdf = surface_f(scene->surface, &at->view, wi, f);
+		if (pdf > 0) {
+			const struct arriving light = environment_at(environment, to);
+			add_light(f, light.rgb, wi.z * weight_of(estimator, light.pdf, pdf), sum);
+		}
+	}
+	struct vec3 wi;
+	if (estimator != ESTIMATE_LIGHT && surface_sample(scene->surface, &at->view, u + AT_SURFACE, &wi)) {
+		const double pdf = surface_f(scene->surface, &at->view, wi, f);
+		const struct arriving light = environment_at(environment, from_frame(&at->frame, wi));
+		add_light(f, light.rgb, wi.z * weight_of(estimator, pdf, light.pdf), sum);
+	}
+}
+
+/* Adds the light that one sample of the pixel sees. Returns whether it sees the sphere at all. */
+static bool add_sample(const struct scene *scene, int x, int y, const double u[DIMENSIONS], double sum[3])
+{
+	const double radius = scene->options->size * (0.5 - MARGIN), middle = 0.5 * scene->options->size;
+	const double right = (x + u[AT_PIXEL] - middle) / radius, up = (middle - y - u[AT_PIXEL + 1]) / radius;
+	const double z2 = 1 - right * right - up * up;
+	if (z2 < SURFACE_HORIZON * SURFACE_HORIZON)
+		return false;
+	struct point at = {.frame = frame_of((struct vec3){right, up, sqrt(z2)})};
+	at.view = surface_view(scene->surface, to_frame(&at.frame, (struct vec3){0, 0, 1}));
+	add_point_lights(scene, &at, sum);
+	if (scene->environment->map.rgb)
+		add_map_light(scene, &at, u, sum);
+	return true;
+}
+
+static void render_pixel(const struct scene *scene, int x, int y, struct sphere *sphere)
+{
+	const int size = scene->options->size, n = scene->options->samples;
+	double shift[DIMENSIONS], sum[3] = {0, 0, 0};
+	int seen = 0;
+	pixel_shift(scene->options->seed, x, y, shift);
+	for (int i = 0; i < n; i++) {
+		double u[DIMENSIONS];
+		for (int d = 0; d < DIMENSIONS; d++) {
+			const double shifted = scene->point[i][d] + shift[d];
+			u[d] = shifted < 1 ? shifted : shifted - 1;
+		}
+		seen += add_sample(scene, x, y, u, sum);
+	}
+	sphere->coverage[x + size * y] = (float)seen / (float)n;
+	for (int c = 0; c < 3; c++)
+		image_at(&sphere->light, x, y)[c] = seen ? (float)(sum[c] / seen) : 0;
+}
+
+static bool cancelled(const struct sphere_options *options)
+{
+	return options->cancel && *options->cancel;
+}
+
+static void render_rows(const struct scene *scene, struct sphere *sphere)
+{
+	const struct sphere_options *options = scene->options;
+#pragma omp parallel for schedule(dynamic) num_threads(options->threads)
+	for (int y = 0; y < options->size; y++) {
+		for (int x = 0; x < options->size && !cancelled(options); x++)
+			render_pixel(scene, x, y, sphere);
+		if (options->row_done) {
+#pragma omp critical(sphere_row_done)
+			options->row_done(options->user);
+		}
+	}
+}
+
+enum status sphere_render(const struct surface *surface, const struct environment *environment,
+			  const struct sphere_options *options, struct sphere *sphere)
+{
+	struct scene scene = {.surface = surface, .environment = environment, .options = options};
+	*sphere = (struct sphere){0};
+	enum status status = fill_points(&scene, options->samples);
+	if (!status)
+		status = image_alloc(&sphere->light, options->size, options->size);
+	if (!status) {
+		sphere->coverage = calloc((size_t)options->size * (size_t)options->size, sizeof(float));
+		status = sphere->coverage ? STATUS_OK : STATUS_NO_MEMORY;
+	}
+	if (!status) {
+		render_rows(&scene, sphere);
+		status = cancelled(options) ? STATUS_INTERRUPTED : STATUS_OK;
+	}
+	free(scene.point);
+	if (status)
+		sphere_free(sphere);
+	return status;
+}
+
+void sphere_free(struct sphere *sphere)
+{
+	image_free(&sphere->light);
+	free(sphere->coverage);
+	*sphere = (struct sphere){0};
+}

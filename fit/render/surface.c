@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "surface.h"
+#include "vndf.h"
+#include <math.h>
+
+static double mean_of(const double rgb[3])
+{
+	return (rgb[0] + rgb[1] + rgb[2]) / 3;
+}
+
+enum status surface_init(struct surface *s, const struct cook_torrance *model, const struct measured *measured,
+			 enum sampling sampling)
+{
+	*s = (struct surface){.model = model, .measured = measured};
+	if (!(mean_of(model->ks) > 0))
+		return STATUS_OK;
+	s->exact = model->ndf;
+	s->exact.lambda_form = LAMBDA_EXACT;
+	s->visible = sampling == SAMPLING_VISIBLE && vndf_supports(&model->ndf);
+	const struct vec3 lowest = {sqrt(1 - SURFACE_HORIZON * SURFACE_HORIZON), 0, SURFACE_HORIZON};
+	const enum status status = masking_init(&s->masking, masking_q(lowest) - 1, MASKING_FINE);
+	if (!status)
+		masking_fill(&s->masking, &model->ndf);
+	return status;
+}
+
+void surface_free(struct surface *s)
+{
+	masking_free(&s->masking);
+}
+
+struct view surface_view(const struct surface *s, struct vec3 wo)
+{
+	const struct cook_torrance *model = s->model;
+	const double ks = mean_of(model->ks), kd = mean_of(model->kd);
+	struct view view = {.wo = wo};
+	if (!(ks > 0))
+		return view;
+	view.G1 = masking_at(&s->masking, masking_q(wo));
+	view.G1_exact = model->ndf.lambda_form == LAMBDA_EXACT ? view.G1 : ndf_G1(&s->exact, wo);
+	const double lobe = ks * fresnel_F(model->fresnel, wo.z, model->n, model->k);
+	/* Neither part is ever left out: the lobe reflects more than this at grazing angles, and a measured material
+	 * scatters light where its model does not. */
+	view.specular = fmin(fmax(lobe / (lobe + kd), 0.1), 0.9);
+	return view;
+}
+
+static double masking_G(const struct surface *s, const struct view *view, struct vec3 wi)
+{
+	if (s->model->gaf == GAF_V_GROOVE)
+		return gaf_G(GAF_V_GROOVE, &s->model->ndf, wi, view->wo);
+	const double G1 = masking_at(&s->masking, masking_q(wi));
+	if (s->model->gaf == GAF_UNCORRELATED)
+		return G1 * view->G1;
+	return G1 > 0 && view->G1 > 0 ? 1 / (1 / G1 + 1 / view->G1 - 1) : 0;
+}
+
+/* What the lobe is worth in one direction. */
+struct lobe {
+	double f;   /* for ks = 1 */
+	double pdf; /* of its normals, per direction wi: d m = d wi / (4 cos_d) */
+};
+
+static struct lobe lobe_at(const struct surface *s, const struct view *view, struct vec3 wi)
+{
+	const struct cook_torrance *model = s->model;
+	const struct vec3 sum = vec3_add(wi, view->wo);
+	const double length = sqrt(vec3_dot(sum, sum)), cos_d = fmin(0.5 * length, 1);
+	const struct vec3 m = vec3_scale(sum, 1 / length);
+	const double D = ndf_D(&model->ndf, m);
+	struct lobe lobe = {0, s->visible ? D * view->G1_exact / (4 * view->wo.z) : D * m.z / (4 * cos_d)};
+	if (!s->measured)
+		lobe.f = fresnel_F(model->fresnel, cos_d, model->n, model->k) * D * masking_G(s, view, wi) /
+			 (4 * wi.z * view->wo.z);
+	return lobe;
+}
+
+double surface_f(const struct surface *s, const struct view *view, struct vec3 wi, double f[3])
+{
+	const struct cook_torrance *model = s->model;
+	struct lobe lobe = {0, 0};
+	f[0] = f[1] = f[2] = 0;
+	if (wi.z < SURFACE_HORIZON)
+		return 0;
+	if (view->specular > 0)
+		lobe = lobe_at(s, view, wi);
+	if (s->measured)
+		measured_f(s->measured, wi, view->wo, f);
+	for (int c = 0; c < 3 && !s->measured; c++)
+		f[c] = model->kd[c] * M_1_PI + model->ks[c] * lobe.f;
+	return view->specular * lobe.pdf + (1 - view->specular) * wi.z * M_1_PI;
+}
+
+bool surface_sample(const struct surface *s, const struct view *view, const double u[3], struct vec3 *wi)
+{
+	if (u[2] >= view->specular) {
+		const double r = sqrt(u[1]), turn = 2 * M_PI * u[0];
+		*wi = (struct vec3){r * cos(turn), r * sin(turn), sqrt(1 - u[1])};
+	} else {
+		const struct vec3 m =
+			s->visible ? vndf_sample(&s->exact, view->wo, u[0], u[1]) : ndf_sample(&s->exact, u[0], u[1]);
+		*wi = vec3_sub(vec3_scale(m, 2 * vec3_dot(view->wo, m)), view->wo);
+	}
+	return wi->z >= SURFACE_HORIZON;
+}

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* surface - what a sphere is made of: its BRDF, and directions in which light matters to it. */
+#ifndef SURFACE_H
+#define SURFACE_H
+
+#include "cook_torrance.h"
+#include "masking.h"
+#include "measured.h"
+#include "sampling.h"
+
+struct surface {
+	const struct cook_torrance *model; /* borrowed; directions are sampled by its lobe */
+	const struct measured *measured;   /* borrowed; what light does, instead of the model. NULL: the model */
+	struct ndf exact;                  /* the model's NDF with the exact Lambda, as it is sampled */
+	bool visible;
+	struct masking masking; /* G1 */
+};
+
+/* struct view - what depends on the view direction alone. */
+struct view {
+	struct vec3 wo;
+	double G1;       /* of the model */
+	double G1_exact; /* of surface.exact */
+	double specular; /* share of the lobe among the sampled directions; the rest is cosine distributed */
+};
+
+/* surface_init - where the NDF has no sampler of visible normals (vndf_supports()), all are sampled. STATUS_NO_MEMORY. What is borrowed must outlive the surface. */
+MUST_CHECK enum status surface_init(struct surface *surface, const struct cook_torrance *model,
+				    const struct measured *measured, enum sampling sampling);
+void surface_free(struct surface *surface);
+
+/* SURFACE_HORIZON - a direction with a smaller cosine counts as below the horizon: that is a millionth of what is above,
+ * and f cos_i is bounded. */
+#define SURFACE_HORIZON 1e-6
+
+/* surface_view - wo.z >= SURFACE_HORIZON. */
+struct view surface_view(const struct surface *surface, struct vec3 wo);
+/* surface_f - the BRDF, 1/sr: the model within 1e-7 of cook_torrance_f(). Returns the density with which
+ * surface_sample() draws wi, 1/sr. Both are 0 for wi.z < SURFACE_HORIZON. */
+double surface_f(const struct surface *surface, const struct view *view, struct vec3 wi, double f[3]);
+/* surface_sample - a direction wi from three numbers in [0, 1). False: it lies below the horizon. */
+bool surface_sample(const struct surface *surface, const struct view *view, const double u[3], struct vec3 *wi);
+
+#endif

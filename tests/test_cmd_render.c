@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* stdfit render, and the pictures of compare: what comes out, what is refused, Ctrl-C. */
+#include "image.h"
+#include "run_program.h"
+
+#include <signal.h>
+#include <sys/stat.h>
+
+/* A material, and a quick picture of it with the parameters it was made with. */
+#define MODEL "--ndf std --sigma 0.25 --gamma 1.8 --kd 0.3,0.2,0.1 --ks 0.5"
+#define QUICK "--size 24 --samples 8"
+/* A fit that takes a moment: few free parameters, few entries. */
+#define CHEAP "--ndf ggx,beckmann --sigma 0.2 --ior 1.5 --max-theta 20"
+
+/* The middle of the first sphere of 24 pixels: left of it a gap, above it two lines of labels. */
+enum { MIDDLE_X = 4 + 12, MIDDLE_Y = 2 * 13 + 12 };
+
+static bool is_there(const char *path)
+{
+	return access(path, F_OK) == 0;
+}
+
+static struct image read_picture(const char *path)
+{
+	struct image image;
+	struct error error = {""};
+	if (image_read(path, &image, &error) != STATUS_OK)
+		fail_msg("%s", error.text);
+	return image;
+}
+
+/* A number of the first row of the CSV on standard output, by column. */
+static double number_at(int column)
+{
+	const char *at = strchr(last.out, '\n');
+	assert_non_null(at);
+	for (at++; column > 0; column--) {
+		at = strchr(at, ',');
+		assert_non_null(at);
+		at++;
+	}
+	return strtod(at, NULL);
+}
+
+static void a_material_beside_its_own_model(void **state)
+{
+	(void)state;
+	stdfit("render m.binary " MODEL " " QUICK " -o own.pfm");
+	expect_code(0);
+	expect_out("material,ndf,error,rmse,delta_e,ssim\nm,std,,");
+	assert_int_equal(count_lines(last.out), 2);
+	check_between(number_at(4), 0, 0.2, "delta E");
+	check_between(number_at(5), 0.999, 1, "SSIM");
+	assert_string_equal(last.err, "");
+	/* Two spheres, and below them the legend and the difference. */
+	struct image image = read_picture("own.pfm");
+	check_between(image.width, 2 * 24, 3 * 24, "width");
+	check_between(image.height, 2 * 24, 5 * 24, "height");
+	float most = 0;
+	for (int i = 0; i < 3 * image.width * image.height; i++) {
+		assert_true(image.rgb[i] >= 0);
+		most = fmaxf(most, image.rgb[i]);
+	}
+	assert_true(most > 0.2F);
+	image_free(&image);
+	/* Another model is another picture. */
+	stdfit("render m.binary --kd 0.3,0.2,0.1 " QUICK);
+	expect_code(0);
+	assert_true(number_at(4) > 1);
+}
+
+static void the_same_bits_for_seed_and_threads(void **state)
+{
+	(void)state;
+	stdfit("render m.binary " MODEL " " QUICK " --seed 5 --threads 1 -o one.pfm");
+	expect_code(0);
+	stdfit("render m.binary " MODEL " " QUICK " --seed 5 --threads 3 -o three.pfm");
+	expect_code(0);
+	stdfit("render m.binary " MODEL " " QUICK " --seed 6 -o other.pfm");
+	expect_code(0);
+	shell("cmp one.pfm three.pfm && ! cmp -s one.pfm other.pfm");
+	expect_code(0);
+	/* One stop is twice the light. */
+	stdfit("render m.binary " MODEL " " QUICK " --seed 5 --exposure 1 -o bright.pfm");
+	expect_code(0);
+	struct image one = read_picture("one.pfm"), bright = read_picture("bright.pfm");
+	check_rel((double)image_at(&bright, MIDDLE_X, MIDDLE_Y)[1], 2 * (double)image_at(&one, MIDDLE_X, MIDDLE_Y)[1],
+		  1e-6, "one stop");
+	image_free(&one);
+	image_free(&bright);
+}
+
+static void png_or_what_stands_for_it(void **state)
+{
+	(void)state;
+	stdfit("render m.binary " MODEL " " QUICK " -o picture.png");
+	expect_code(0);
+	if (!image_has_png()) {
+		print_message("a build without libpng\n");
+		expect_error(0, "the picture goes to 'picture.pfm'");
+		struct image image = read_picture("picture.pfm");
+		image_free(&image);
+		assert_false(is_there("picture.png"));
+		skip();
+	}
+	shell("head -c 8 picture.png | od -An -c | tr -d ' \\n'");
+	expect_out("211PNG\\r\\n032\\n");
+}
+
+static void fits_and_tables_make_sheets(void **state)
+{
+	(void)state;
+	stdfit("fit m.binary n.binary " CHEAP " -o fits.csv");
+	expect_code(0);
+	stdfit("render fits.csv " QUICK " -o sheet.pfm");
+	expect_code(0);
+	assert_int_equal(count_lines(last.out), 5);
+	expect_out("\nm,beckmann,");
+	expect_out("\nn,ggx,");
+	struct image sheet = read_picture("sheet.pfm");
+	check_between(sheet.width, 3 * 24, 4 * 24, "three columns");
+	check_between(sheet.height, 2 * 24, 4 * 24, "two rows");
+	/* The same from the files and their rows; one NDF of them; with the differences. */
+	char *all = strdup(last.out);
+	stdfit("render m.binary n.binary --from fits.csv " QUICK);
+	expect_code(0);
+	assert_string_equal(last.out, all);
+	free(all);
+	stdfit("render . --from fits.csv --ndf ggx --difference " QUICK " -o more.pfm");
+	expect_code(0);
+	assert_int_equal(count_lines(last.out), 3);
+	struct image more = read_picture("more.pfm");
+	assert_true(more.width < sheet.width && more.height > sheet.height + 24);
+	image_free(&more);
+	image_free(&sheet);
+	/* And from fits made for the picture. */
+	stdfit("render m.binary " CHEAP " " QUICK);
+	expect_code(0);
+	expect_out("\nm,ggx,");
+	/* compare shows the same errors beside its own. */
+	stdfit("compare fits.csv --pictures");
+	expect_code(0);
+	expect_out("gain_over_beckmann,delta_e_beckmann,delta_e_ggx,ssim_beckmann,ssim_ggx\n");
+	assert_int_equal(count_lines(last.out), 7);
+	stdfit("compare fits.csv");
+	expect_code(0);
+	assert_null(strstr(last.out, "delta_e"));
+}
+
+static void light_of_several_kinds(void **state)
+{
+	(void)state;
+	/* A grey map of light: Lambert alone stays below it. */
+	shell("{ printf 'PF\\n8 4\\n-1\\n'; for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 "
+	      "26 27 "
+	      "28 29 30 31 32; do printf '\\0\\0\\200?\\0\\0\\200?\\0\\0\\200?'; done; } >grey.pfm");
+	expect_code(0);
+	stdfit("render m.binary " MODEL " " QUICK " -e grey.pfm -o grey_light.pfm");
+	expect_code(0);
+	struct image image = read_picture("grey_light.pfm");
+	float *middle = image_at(&image, MIDDLE_X, MIDDLE_Y);
+	check_between((double)middle[0], 0.25, 1, "red");
+	assert_true(middle[0] > middle[1] && middle[1] > middle[2]);
+	image_free(&image);
+	stdfit("render m.binary " MODEL " " QUICK " -e sky");
+	expect_code(0);
+	stdfit("render m.binary " MODEL " " QUICK " --light '0,0,1;-1,1,1,0.5' --sampling ndf");
+	expect_code(0);
+	stdfit("render m.binary " MODEL " " QUICK " -e studio --light 0,0,1");
+	expect_code(0);
+}
+
+static void what_is_refused(void **state)
+{
+	(void)state;
+	shell("printf 'material,value\\nm,1\\n' >other.csv; printf 'PF\\n3 "
+	      "2\\n-1\\n0123456789012345678901234567890123456789"
+	      "01234567890123456789012345678901' >square.pfm; echo text >text.hdr");
+	stdfit("render m.binary " MODEL " -e other.csv -o no.png");
+	expect_error(1, "cannot read 'other.csv': expected a PFM or Radiance .hdr picture");
+	stdfit("render m.binary " MODEL " -e text.hdr -o no.png");
+	expect_error(1, "'text.hdr'");
+	stdfit("render m.binary " MODEL " -e square.pfm -o no.png");
+	expect_error(1, "cannot light with 'square.pfm': expected a map of latitude and longitude");
+	stdfit("render m.binary " MODEL " -e no-such.hdr -o no.png");
+	expect_error(1, "'no-such.hdr': No such file");
+	stdfit("render other.csv -o no.png");
+	expect_error(1, "'other.csv'");
+	stdfit("render m.binary " MODEL " " QUICK " -o no/such/place.pfm");
+	expect_error(1, "cannot write 'no/such/place.pfm'");
+	stdfit("render m.binary " MODEL " -o no.jpg");
+	expect_error(2, "expected -o FILE.png or -o FILE.pfm");
+	stdfit("render m.binary " MODEL " --light 0,0,0");
+	expect_error(1, "bad value '0,0,0' for --light");
+	stdfit("render m.binary " MODEL " --light 1,2,3,4,5");
+	expect_error(1, "for --light");
+	stdfit("render m.binary " MODEL " --size 7");
+	expect_error(2, "--size");
+	stdfit("render m.binary --from fits.csv --kd 0.5");
+	expect_error(2, "--kd and --from exclude each other");
+	stdfit("render fits.csv m.binary");
+	expect_error(2, "expected one table and nothing beside it");
+	stdfit("render m.binary " MODEL
+	       " --size 4096 --samples 1 --light 0,0,1 -o no.pfm no-such.binary no2.binary no3.binary "
+	       "no4.binary no5.binary no6.binary no7.binary no8.binary");
+	expect_error(1, "the picture would be too large");
+	assert_false(is_there("no.png"));
+	assert_false(is_there("no.pfm"));
+	shell("{ printf 'PF\\n2 1\\n-1\\n'; printf '\\0\\0\\200?\\0\\0\\200?\\0\\0\\200?'; printf '\\0\\0\\200?\\0\\0\\200?\\0\\0\\200?'; } "
+	      ">light.pfm; cp light.pfm light.bak");
+	stdfit("render m.binary " MODEL " " QUICK " -e light.pfm -o ./light.pfm");
+	expect_error(2, "--output names a file that is to be read");
+	shell("cmp light.pfm light.bak");
+	expect_code(0);
+	stdfit("render");
+	expect_error(2, "expected PATH...");
+}
+
+static void one_bad_file_costs_only_itself(void **state)
+{
+	(void)state;
+	stdfit("render no-such.binary m.binary " MODEL " " QUICK " -o rest.pfm");
+	expect_error(1, "no-such.binary");
+	assert_int_equal(count_lines(last.out), 2);
+	assert_true(is_there("rest.pfm"));
+	stdfit("render no-such.binary " MODEL " " QUICK " -o none.pfm");
+	expect_error(1, "no-such.binary");
+	assert_false(is_there("none.pfm"));
+}
+
+static void interrupted(void **state)
+{
+	(void)state;
+	const pid_t pid =
+		start("exec \"$STDFIT\" render m.binary " MODEL " --size 2048 --samples 65536 -o never.pfm 2>stderr");
+	nanosleep(&(struct timespec){.tv_nsec = 600000000}, NULL);
+	assert_int_equal(kill(pid, SIGINT), 0);
+	assert_int_equal(end(pid), 130);
+	assert_false(is_there("never.pfm"));
+}
+
+static int set_up(void **state)
+{
+	(void)state;
+	if (!enter_directory())
+		return -1;
+	stdfit("synth m.binary " MODEL);
+	expect_code(0);
+	stdfit("synth n.binary --ndf ggx --sigma 0.1 --kd 0.05 --ks 1");
+	expect_code(0);
+	return 0;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	return leave_directory();
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_material_beside_its_own_model), cmocka_unit_test(the_same_bits_for_seed_and_threads),
+		cmocka_unit_test(png_or_what_stands_for_it),       cmocka_unit_test(fits_and_tables_make_sheets),
+		cmocka_unit_test(light_of_several_kinds),          cmocka_unit_test(what_is_refused),
+		cmocka_unit_test(one_bad_file_costs_only_itself),  cmocka_unit_test(interrupted),
+	};
+	return cmocka_run_group_tests(tests, set_up, tear_down);
+}
