@@ -72,7 +72,7 @@ static void light_samples_follow_their_density(void **state)
 {
 	(void)state;
 	struct environment e = spotted_light();
-	enum { N = 60000, CELLS = 32 * 16 };
+	enum { N = 40000, CELLS = 32 * 16 };
 	static int count[CELLS];
 	static double expected[CELLS];
 	uint64_t seed = 11;
@@ -210,7 +210,7 @@ static void surfaces_reflect_as_their_model(void **state)
 static void surface_samples_follow_their_density(void **state)
 {
 	(void)state;
-	enum { N = 12000, RINGS = 12, SECTORS = 16, CELLS = RINGS * SECTORS, FINE = 12 };
+	enum { N = 8000, RINGS = 12, SECTORS = 16, CELLS = RINGS * SECTORS, FINE = 12 };
 	static const double angles[] = {0, 50, 85};
 	for (int i = 0; i < MODELS; i++)
 		for (int sampling = 0; sampling < SAMPLING_COUNT; sampling++)
@@ -224,7 +224,7 @@ static void surface_samples_follow_their_density(void **state)
 				double expected[CELLS] = {0}, f[3];
 				uint64_t seed = 17;
 				for (int n = 0; n < N; n++) {
-					const double u[3] = {uniform(&seed), uniform(&seed), uniform(&seed)};
+					const double u[2] = {uniform(&seed), uniform(&seed)};
 					struct vec3 wi;
 					if (!surface_sample(&surface, &view, u, &wi))
 						continue;
@@ -272,7 +272,7 @@ static void sampled_albedo_is_the_energy(void **state)
 				double sum = 0, squares = 0;
 				enum { N = 4000 };
 				for (int n = 0; n < N; n++) {
-					const double u[3] = {uniform(&seed), uniform(&seed), uniform(&seed)};
+					const double u[2] = {uniform(&seed), uniform(&seed)};
 					struct vec3 wi;
 					double f[3];
 					if (!surface_sample(&surface, &view, u, &wi))
@@ -596,7 +596,7 @@ static void built_in_light_is_of_one_brightness(void **state)
 						   (struct sphere_options){.size = 24, .samples = 256, .threads = 2});
 		double most = 0;
 		for (int p = 0; p < 24 * 24; p++)
-			most = fmax(most, (double)sphere.light.rgb[3 * p + 1]);
+			most = fmax(most, sphere.coverage[p] == 1 ? (double)sphere.light.rgb[3 * p + 1] : 0);
 		check_between(most, 0.9, 1.1, environment_name(i));
 		sphere_free(&sphere);
 		environment_free(&light);

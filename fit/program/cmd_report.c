@@ -139,7 +139,7 @@ static enum status write_page(struct report *r, FILE *file, const struct materia
 {
 	struct page page;
 	enum status status = begin(r, &page, file, materials, error);
-	r->progress = progress_start(materials->n, r->options->quiet);
+	r->progress = progress_start(materials->n, "materials", r->options->quiet);
 	for (size_t m = 0; m < materials->n && !status; m++) {
 		progress_draw(&r->progress);
 		status = add_material(r, &page, m, error);

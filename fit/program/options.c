@@ -202,7 +202,7 @@ struct options options_default(enum command command)
 		.kd = {0, 0, 0},
 		.environment = "studio",
 		.size = 256,
-		.pixel_samples = 32,
+		.pixel_samples = 64,
 	};
 	if (command == COMMAND_EVAL || command == COMMAND_SYNTH) {
 		options.fit.n_ndf = 1;

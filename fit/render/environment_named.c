@@ -107,9 +107,9 @@ enum status environment_named(const char *name, struct environment *e)
 	/* The factors bring the brightest point of a white sphere to 1. */
 	switch (names_find(names, NAMES, name)) {
 	case 0:
-		return draw(e, studio_at, 0.54);
+		return draw(e, studio_at, 0.684);
 	case 1:
-		return draw(e, sky_at, 1);
+		return draw(e, sky_at, 1.027);
 	case 2:
 		environment_from_lights(
 			e, &(struct light){vec3_unit((struct vec3){-0.5, 0.6, 0.7}), {M_PI, M_PI, M_PI}}, 1);

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The numbers of a sample: place in the pixel, light, surface. */
-enum { AT_PIXEL = 0, AT_LIGHT = 2, AT_SURFACE = 4, DIMENSIONS = 7 };
+/* The numbers of a sample, in pairs: place in the pixel, light, surface. */
+enum { AT_PIXEL = 0, AT_LIGHT = 2, AT_SURFACE = 4, DIMENSIONS = 6 };
 
 #define MARGIN 0.02
 
@@ -13,7 +13,7 @@ struct scene {
 	const struct surface *surface;
 	const struct environment *environment;
 	const struct sphere_options *options;
-	double (*point)[DIMENSIONS]; /* per sample, before the pixel's shift */
+	uint32_t (*point)[DIMENSIONS]; /* per sample: bits behind the point, before the pixel's scrambling */
 };
 
 /* Splitmix64's mixing of bits. */
@@ -25,25 +25,51 @@ static uint64_t mix(uint64_t x)
 	return x ^ (x >> 31);
 }
 
-static void pixel_shift(uint64_t seed, int x, int y, double shift[DIMENSIONS])
+/* Bits to be changed in each of a pixel's numbers. All the intervals that the points fill evenly stay so. */
+static void pixel_scramble(uint64_t seed, int x, int y, uint32_t scramble[DIMENSIONS])
 {
 	uint64_t state = mix(mix(seed) ^ ((uint64_t)y << 32 | (uint64_t)x));
 	for (int d = 0; d < DIMENSIONS; d++) {
 		state = mix(state);
-		shift[d] = (double)(state >> 11) * 0x1p-53;
+		scramble[d] = (uint32_t)(state >> 32);
 	}
 }
 
-/* The first points of the sequence, the origin among them, which GSL leaves out. */
+/* The first points of the sequence in two dimensions, the origin among them, which GSL leaves out. */
+static enum status fill_sobol(uint32_t (*point)[2], int n)
+{
+	gsl_qrng *sobol = gsl_qrng_alloc(gsl_qrng_sobol, 2);
+	if (!sobol)
+		return STATUS_NO_MEMORY;
+	point[0][0] = point[0][1] = 0;
+	for (int i = 1; i < n; i++) {
+		double u[2];
+		gsl_qrng_get(sobol, u);
+		point[i][0] = (uint32_t)ldexp(u[0], 32);
+		point[i][1] = (uint32_t)ldexp(u[1], 32);
+	}
+	gsl_qrng_free(sobol);
+	return STATUS_OK;
+}
+
+/* Each pair of numbers runs through the same points, in an order of its own: two dimensions of Sobol's sequence are far
+ * more even than any higher ones. */
 static enum status fill_points(struct scene *scene, int n)
 {
-	gsl_qrng *sobol = gsl_qrng_alloc(gsl_qrng_sobol, DIMENSIONS);
+	uint32_t(*pair)[2] = calloc((size_t)n, sizeof *pair);
 	scene->point = calloc((size_t)n, sizeof *scene->point);
-	for (int i = 1; i < n && sobol && scene->point; i++)
-		gsl_qrng_get(sobol, scene->point[i]);
-	if (sobol)
-		gsl_qrng_free(sobol);
-	return sobol && scene->point ? STATUS_OK : STATUS_NO_MEMORY;
+	const enum status status = pair && scene->point ? fill_sobol(pair, n) : STATUS_NO_MEMORY;
+	for (int d = 0; d < DIMENSIONS && !status; d += 2)
+		for (int i = 0; i < n; i++) {
+			const int other = i + (int)(mix((uint64_t)d << 32 | (uint64_t)i) % (uint64_t)(n - i));
+			for (int e = 0; e < 2; e++) {
+				const uint32_t kept = pair[i][e];
+				scene->point[i][d + e] = pair[i][e] = pair[other][e];
+				pair[other][e] = kept;
+			}
+		}
+	free(pair);
+	return status;
 }
 
 /* A direction in space as seen from a frame whose z is the normal, and back. */
@@ -143,15 +169,14 @@ static bool add_sample(const struct scene *scene, int x, int y, const double u[D
 static void render_pixel(const struct scene *scene, int x, int y, struct sphere *sphere)
 {
 	const int size = scene->options->size, n = scene->options->samples;
-	double shift[DIMENSIONS], sum[3] = {0, 0, 0};
+	uint32_t scramble[DIMENSIONS];
+	double sum[3] = {0, 0, 0};
 	int seen = 0;
-	pixel_shift(scene->options->seed, x, y, shift);
+	pixel_scramble(scene->options->seed, x, y, scramble);
 	for (int i = 0; i < n; i++) {
 		double u[DIMENSIONS];
-		for (int d = 0; d < DIMENSIONS; d++) {
-			const double shifted = scene->point[i][d] + shift[d];
-			u[d] = shifted < 1 ? shifted : shifted - 1;
-		}
+		for (int d = 0; d < DIMENSIONS; d++)
+			u[d] = 0x1p-32 * (double)(scene->point[i][d] ^ scramble[d]);
 		seen += add_sample(scene, x, y, u, sum);
 	}
 	sphere->coverage[x + size * y] = (float)seen / (float)n;

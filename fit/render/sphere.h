@@ -34,8 +34,8 @@ struct sphere {
 };
 
 /* sphere_render - a sphere that fills the picture, 2 % of its size away from the border.
- * Places within a pixel and directions come from one Sobol' sequence, shifted per pixel by a hash of the seed and the
- * pixel's place: two spheres rendered with the same options differ by their surfaces, hardly by noise, and a seed gives
+ * Places within a pixel and directions come from Sobol's sequence, scrambled per pixel by a hash of the seed and the
+ * pixel's place: two spheres rendered with the same options differ by their surfaces, less by noise, and a seed gives
  * the same bits for any number of threads.
  * Returns: STATUS_OK; STATUS_NO_MEMORY, STATUS_INTERRUPTED with *sphere cleared. */
 MUST_CHECK enum status sphere_render(const struct surface *surface, const struct environment *environment,

@@ -91,15 +91,18 @@ double surface_f(const struct surface *s, const struct view *view, struct vec3 w
 	return view->specular * lobe.pdf + (1 - view->specular) * wi.z * M_1_PI;
 }
 
-bool surface_sample(const struct surface *s, const struct view *view, const double u[3], struct vec3 *wi)
+bool surface_sample(const struct surface *s, const struct view *view, const double u[2], struct vec3 *wi)
 {
-	if (u[2] >= view->specular) {
-		const double r = sqrt(u[1]), turn = 2 * M_PI * u[0];
-		*wi = (struct vec3){r * cos(turn), r * sin(turn), sqrt(1 - u[1])};
-	} else {
+	/* The second number chooses between the lobe and the rest, and what is left of it serves there. */
+	if (u[1] < view->specular) {
+		const double rest = u[1] / view->specular;
 		const struct vec3 m =
-			s->visible ? vndf_sample(&s->exact, view->wo, u[0], u[1]) : ndf_sample(&s->exact, u[0], u[1]);
+			s->visible ? vndf_sample(&s->exact, view->wo, u[0], rest) : ndf_sample(&s->exact, u[0], rest);
 		*wi = vec3_sub(vec3_scale(m, 2 * vec3_dot(view->wo, m)), view->wo);
+	} else {
+		const double rest = (u[1] - view->specular) / (1 - view->specular);
+		const double r = sqrt(rest), turn = 2 * M_PI * u[0];
+		*wi = (struct vec3){r * cos(turn), r * sin(turn), sqrt(1 - rest)};
 	}
 	return wi->z >= SURFACE_HORIZON;
 }

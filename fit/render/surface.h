@@ -38,7 +38,7 @@ struct view surface_view(const struct surface *surface, struct vec3 wo);
 /* surface_f - the BRDF, 1/sr: the model within 1e-7 of cook_torrance_f(). Returns the density with which
  * surface_sample() draws wi, 1/sr. Both are 0 for wi.z < SURFACE_HORIZON. */
 double surface_f(const struct surface *surface, const struct view *view, struct vec3 wi, double f[3]);
-/* surface_sample - a direction wi from three numbers in [0, 1). False: it lies below the horizon. */
-bool surface_sample(const struct surface *surface, const struct view *view, const double u[3], struct vec3 *wi);
+/* surface_sample - a direction wi from two numbers in [0, 1). False: it lies below the horizon. */
+bool surface_sample(const struct surface *surface, const struct view *view, const double u[2], struct vec3 *wi);
 
 #endif
