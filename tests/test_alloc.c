@@ -5,6 +5,18 @@
  * Left out are allocations of OpenMP's runtime, libgomp, which ends the process by itself ("libgomp: Out of memory").
  * The first allocations of a run are tried, and as many of the others, evenly spread; STDFIT_ALLOC=N in the environment
  * says how many, STDFIT_SCENARIO names the only command to be tried. */
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define OWN_ALLOCATOR 0 /* its malloc() is needed before anything is ready for another */
+#endif
+#endif
+#if defined(__SANITIZE_THREAD__)
+#define OWN_ALLOCATOR 0
+#endif
+#ifndef OWN_ALLOCATOR
+#define OWN_ALLOCATOR 1
+#endif
+
 #include "commands.h"
 #include "json_check.h"
 #include "merl.h"
@@ -65,7 +77,7 @@ static bool asked_by_runtime(const void *caller)
 	return false;
 }
 
-static __attribute__((noinline)) bool refuse(const void *caller)
+static __attribute__((noinline, unused)) bool refuse(const void *caller)
 {
 	if (!armed || inside)
 		return false;
@@ -93,6 +105,8 @@ __attribute__((weak)) void *__interceptor_malloc(size_t size);
 __attribute__((weak)) void *__interceptor_calloc(size_t n, size_t size);
 __attribute__((weak)) void *__interceptor_realloc(void *old, size_t size);
 __attribute__((weak)) void *__interceptor_memalign(size_t alignment, size_t size);
+
+#if OWN_ALLOCATOR
 
 void *malloc(size_t size)
 {
@@ -135,6 +149,8 @@ int posix_memalign(void **memory, size_t alignment, size_t size)
 	*memory = got;
 	return 0;
 }
+
+#endif
 
 /* --- runs -------------------------------------------------------------------------------------------------------- */
 
@@ -432,6 +448,10 @@ static bool is_wanted(const struct scenario *scenario)
 static void light(void **state)
 {
 	(void)state;
+	if (!OWN_ALLOCATOR) {
+		print_message("ThreadSanitizer lets no other malloc() be\n");
+		skip();
+	}
 	for (size_t i = 0; i < sizeof scenarios / sizeof *scenarios; i++)
 		if (!scenarios[i].heavy && is_wanted(&scenarios[i]))
 			check_scenario(&scenarios[i]);
@@ -440,6 +460,8 @@ static void light(void **state)
 static void heavy(void **state)
 {
 	(void)state;
+	if (!OWN_ALLOCATOR)
+		skip();
 	for (size_t i = 0; i < sizeof scenarios / sizeof *scenarios; i++)
 		if (scenarios[i].heavy && is_wanted(&scenarios[i]))
 			check_scenario(&scenarios[i]);
