@@ -115,6 +115,8 @@ void sheet_difference(struct sheet *sheet, int column, int row, const struct sph
 void sheet_legend(struct sheet *sheet, int row)
 {
 	enum { TICKS = 5 };
+	if (sheet->size < SHEET_LEGEND_SIZE)
+		return;
 	const int scale = sheet->scale, line = FONT_HEIGHT * scale;
 	const int left = cell_x(sheet, 0) + sheet->size / 3, width = sheet->size / 10;
 	const int top = difference_y(sheet, row) + sheet->size / 8 + 3 * line / 2, height = sheet->size * 5 / 8;

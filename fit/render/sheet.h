@@ -26,7 +26,9 @@ void sheet_title(struct sheet *sheet, int column, const char *title);
 void sheet_sphere(struct sheet *sheet, int column, int row, const struct sphere *sphere, const char *label);
 /* sheet_difference - draws below a sphere how far it is from `from`, CIEDE2000 in false colours. */
 void sheet_difference(struct sheet *sheet, int column, int row, const struct sphere *sphere, const struct sphere *from);
-/* sheet_legend - draws below the first sphere of a row what the false colours mean. */
+/* sheet_legend - draws below the first sphere of a row what the false colours mean; nothing where spheres are smaller
+ * than SHEET_LEGEND_SIZE, which leaves no room for it. */
+enum { SHEET_LEGEND_SIZE = 64 };
 void sheet_legend(struct sheet *sheet, int row);
 
 #endif
