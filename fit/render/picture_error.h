@@ -12,7 +12,8 @@ struct picture_error {
 	double ssim;    /* of the same colours' luminance as sRGB encodes it; ssim.h */
 };
 
-/* picture_error_compute - of two spheres of one size. All NaN where no pixel shows the sphere alone. STATUS_NO_MEMORY. */
+/* picture_error_compute - of two spheres of one size. All NaN where no pixel shows the sphere alone.
+ * STATUS_NO_MEMORY. */
 MUST_CHECK enum status picture_error_compute(const struct sphere *a, const struct sphere *b,
 					     struct picture_error *error);
 

@@ -24,13 +24,14 @@ struct view {
 	double specular; /* share of the lobe among the sampled directions; the rest is cosine distributed */
 };
 
-/* surface_init - where the NDF has no sampler of visible normals (vndf_supports()), all are sampled. STATUS_NO_MEMORY. What is borrowed must outlive the surface. */
+/* surface_init - where the NDF has no sampler of visible normals (vndf_supports()), all are sampled.
+ * STATUS_NO_MEMORY. What is borrowed must outlive the surface. */
 MUST_CHECK enum status surface_init(struct surface *surface, const struct cook_torrance *model,
 				    const struct measured *measured, enum sampling sampling);
 void surface_free(struct surface *surface);
 
-/* SURFACE_HORIZON - a direction with a smaller cosine counts as below the horizon: that is a millionth of what is above,
- * and f cos_i is bounded. */
+/* SURFACE_HORIZON - a direction with a smaller cosine counts as below the horizon: that is a millionth of what is
+ * above, and f cos_i is bounded. */
 #define SURFACE_HORIZON 1e-6
 
 /* surface_view - wo.z >= SURFACE_HORIZON. */
