@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Targets: all (default), check, demo, bench, figures, asan, ubsan, tsan, lint, valgrind, compilers, fuzz, killtest, clean.
-# All but `all` and `clean` install what is missing first.
+# Targets: all (default), check, demo, bench, figures, stability, asan, ubsan, tsan, lint, valgrind, compilers, fuzz,
+# killtest, clean. All but `all` and `clean` install what is missing first.
 VERSION := 0.1.0
 
 CC ?= cc
@@ -39,6 +39,13 @@ CFLAGS_kernel := -O3 -Wno-psabi -ffp-contract=fast
 CFLAGS_kernel_avx2 := $(CFLAGS_kernel) -mavx2 -mfma -DKERNEL_NAME=kernel_avx2
 CFLAGS_metrics := -O3
 CFLAGS_bench := -O3
+# The mathematics raises no floating-point exception in its domain; the compiler may not speculate one either.
+$(BUILD)/src/%.o: fpflags := -fno-math-errno -ftrapping-math -ffp-contract=off
+# High precision for `make stability`, where MPFR is installed.
+ifneq ($(shell $(PKG_CONFIG) --exists mpfr 2>/dev/null && echo yes),)
+CFLAGS_stability := -DHAVE_MPFR
+$(BUILD)/tests/stability: LIBS += -lmpfr
+endif
 ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
 AVX2 ?= yes
 endif
@@ -152,6 +159,11 @@ figures: setup
 	@$(MAKE) --no-print-directory all $(BUILD)/tests/figures
 	@FITS='$(FITS)' MERL='$(MERL)' scripts/figures.sh $(BUILD)
 
+# The mathematics over the extremes of its domain: BUILD/stability.csv and a summary; fails where it finds something.
+stability: setup
+	@$(MAKE) --no-print-directory $(BUILD)/tests/stability
+	@$(BUILD)/tests/stability $(BUILD)/stability.csv
+
 demo: setup
 	@$(MAKE) --no-print-directory all
 	@scripts/demo.sh $(BUILD)/stdfit
@@ -160,6 +172,6 @@ clean:
 	rm -rf $(BUILD)
 
 
-.PHONY: all setup check run-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures demo clean
+.PHONY: all setup check run-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo clean
 
 -include $(lib_objects:.o=.d) $(BUILD)/fit/program/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))

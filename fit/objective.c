@@ -77,6 +77,9 @@ static enum status tabulate(struct objective *o, const struct shape *shape)
 	return STATUS_OK;
 }
 
+/* D F beyond this, a sigma below 1e-10, counts as this: times the largest geo, 1/(4 1e-9 1e-9), it is still a float. */
+#define ROW_MAX 1e20
+
 static void fill_rows(struct objective *o, const struct shape *shape)
 {
 	float F[SAMPLES_THETA_D];
@@ -86,7 +89,7 @@ static void fill_rows(struct objective *o, const struct shape *shape)
 					shape->k);
 	for (int i = 0; i < SAMPLES_THETA_H; i++)
 		for (int j = 0; j < SAMPLES_THETA_D; j++)
-			o->row[j + SAMPLES_THETA_D * i] = (float)o->D[i] * F[j];
+			o->row[j + SAMPLES_THETA_D * i] = (float)fmin(o->D[i], ROW_MAX) * F[j];
 }
 
 static void lobe_block(struct objective *o, int block)

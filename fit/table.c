@@ -269,6 +269,30 @@ static void fill_row(struct table *table, const struct samples *samples, int i, 
 	}
 }
 
+/* The kernel adds a few hundred floats before it goes on in double: where those could overflow, everything in units of
+ * the weight becomes smaller by a power of two, which changes no error. */
+static void keep_in_range(struct table *table)
+{
+	const double total = table->sum[0] + table->sum[1] + table->sum[2];
+
+	if (!(total > 1e30))
+		return;
+	const double scale = exp2(-ceil(log2(total * 1e-20)));
+	const size_t slots = (size_t)table->n_blocks * KERNEL_BLOCK;
+	const size_t values =
+		(size_t)(table->n_blocks + table->n_pair_blocks) * (size_t)SAMPLES_CHANNELS * KERNEL_BLOCK;
+
+	for (size_t n = 0; n < slots; n++) {
+		table->geo[n] *= (float)scale;
+		table->w[n] *= (float)scale;
+	}
+	for (size_t n = 0; n < values; n++)
+		table->value[n] *= (float)scale;
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		table->sum[c] *= scale;
+	table->sum_w *= scale;
+}
+
 enum status table_init(struct table *table, const struct geometry *g, const struct samples *samples, int threads)
 {
 	struct fill fill[SAMPLES_THETA_H + 1] = {0};
@@ -311,6 +335,7 @@ enum status table_init(struct table *table, const struct geometry *g, const stru
 		table_free(table);
 		return STATUS_NO_DATA;
 	}
+	keep_in_range(table);
 	return STATUS_OK;
 }
 

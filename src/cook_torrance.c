@@ -10,8 +10,9 @@ double cook_torrance_lobe(const struct cook_torrance *model, struct vec3 wi, str
 	const double cos_d = fmin(0.5 * vec3_length(sum), 1.0);
 	const double F = fresnel_F(model->fresnel, cos_d, model->n, model->k);
 	const double D = ndf_D(&model->ndf, vec3_unit(sum));
-	const double G = gaf_G(model->gaf, &model->ndf, wi, wo);
-	return F * D * G / (4.0 * wi.z) / wo.z;
+	const double G_over_cosines = gaf_G_over_cosines(model->gaf, &model->ndf, wi, wo);
+	/* Where D has underflown the other factor may have overflown. */
+	return D == 0.0 ? 0.0 : 0.25 * F * (D * G_over_cosines);
 }
 
 void cook_torrance_f(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo, double f[3])

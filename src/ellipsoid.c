@@ -138,9 +138,14 @@ struct vec3 ellipsoid_sample(const struct ellipsoid *ellipsoid, struct vec3 wi, 
 	x = s * x + (1.0 - s) * h;
 
 	const struct vec3 e3 = vec3_scale(Aw, 1.0 / length);
-	const struct vec3 side = mat3_apply(ellipsoid->inverse, (struct vec3){wi.y, -wi.x, 0.0});
 	const bool collinear = wi.x == 0.0 && wi.y == 0.0;
-	const struct vec3 e2 = collinear ? across(e3) : vec3_scale(vec3_unit(side), ellipsoid->sign);
+	struct vec3 e2;
+	if (collinear) {
+		e2 = across(e3);
+	} else { /* of length 1 first: denormal numbers would be lost */
+		const struct vec3 level = vec3_unit((struct vec3){wi.y, -wi.x, 0.0});
+		e2 = vec3_scale(vec3_unit(mat3_apply(ellipsoid->inverse, level)), ellipsoid->sign);
+	}
 	const struct vec3 e1 = vec3_cross(e2, e3);
 	const struct vec3 p = vec3_add(vec3_add(vec3_scale(e1, x), vec3_scale(e2, y)), vec3_scale(e3, z));
 	struct vec3 m = vec3_unit(mat3_apply_transposed(ellipsoid->A, p));

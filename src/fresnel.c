@@ -48,6 +48,8 @@ double fresnel_dielectric(double cos_d, double n)
 	const double g2 = g_squared(m2, m2_minus_1, c);
 	if (c <= 0.0 || g2 < 0.0)
 		return 1.0;
+	if (n == 1.0)
+		return 0.0;
 	const double g = sqrt(g2);
 	const double s_sum = c + g;
 	const double p_sum = m2 * c + g;
@@ -69,6 +71,8 @@ double fresnel_conductor(double cos_d, double eta, double k)
 	const double c = fmin(cos_d, 1.0);
 	if (c <= 0.0)
 		return 1.0;
+	if (k == 0.0)
+		return fresnel_dielectric(c, eta);
 	const double s2 = (1.0 - c) * (1.0 + c);
 	const double re_m2 = (eta - k) * (eta + k);
 	const double im_m2 = 2.0 * eta * k;

@@ -31,7 +31,8 @@ double fresnel_schlick(double cos_d, double n);
 
 /* fresnel_conductor - the dielectric form with the complex index eta + i k, (|r_s|^2 + |r_p|^2)/2.
  * Given:   eta > 0, k >= 0, up to 1e75 each
- * Returns: as the dielectric form at k = 0; relative error below 2e-15. */
+ * Returns: the dielectric form at k = 0; relative error below 2e-15 (for 0 < k < 1e-150 the digits of denormal numbers).
+ */
 double fresnel_conductor(double cos_d, double eta, double k);
 
 /* fresnel_F - the chosen form; k is read by the conductor only, n by all but FRESNEL_NONE. */

@@ -114,7 +114,7 @@ struct lambda_rational lambda_form_rational(double gamma, double K)
 	const double g = 1.0 / gamma;
 	return (struct lambda_rational){
 		.factor = isinf(gamma) ? 1.0 / sqrt(M_PI) : K / sqrt(gamma - 1.0),
-		.S1 = (1.0 - g) / (2.0 - 3.0 * g),
+		.S1 = isinf(gamma) ? 0.5 : (gamma - 1.0) / (2.0 * gamma - 3.0), /* 1 - g has no digits near 1.5 */
 		.S22 = ratio(p22, q22, g),
 		.S23 = ratio(p23, q23, g),
 	};
@@ -131,8 +131,12 @@ static double rational_lambda(double gamma, double K, double z)
 
 double lambda_form_lambda(enum lambda_form form, double gamma, double K, double z)
 {
+	if (isnan(z))
+		return z;
 	if (z > Z_MAX)
 		z = Z_MAX;
+	if (form == LAMBDA_RATIONAL)
+		return fmax(rational_lambda(gamma, K, z), 0.0);
 	const double u = z / sqrt(gamma - 1.0);
 	const double front = exp(-(gamma - 1.5) * log1p(u * u)) / ((2.0 * gamma - 3.0) * u);
 	double lambda = NAN;
@@ -147,8 +151,6 @@ double lambda_form_lambda(enum lambda_form form, double gamma, double K, double 
 		lambda = K * (front - half_integer_integral((unsigned)(2.0 * gamma - 3.0), u));
 		break;
 	case LAMBDA_RATIONAL:
-		lambda = rational_lambda(gamma, K, z);
-		break;
 	case LAMBDA_EXACT:
 	case LAMBDA_FORM_COUNT:
 		break;

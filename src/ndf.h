@@ -20,7 +20,8 @@
  * Lambda 3e-14 where it exceeds 1e-20 and 1e-12 down to 1e-300, of G1 1e-15. The rounding of the vector itself changes
  * a far tail of D by more: with vec3_from_spherical_deg() by up to 2.3e-16 |ln D|, 1e-13 at D = 1e-200. The factor f of
  * hyper-cauchy and t-family adds 2e-16 (1 + gamma) to D and Lambda. gtr and low: D within 2e-15 + 1e-15 gamma (C);
- * G1, by quadrature, 1e-12. */
+ * G1, by quadrature, 1e-12. From gamma = 1e22 on std is beckmann. No function here raises an invalid operation, a
+ * division by zero or, but for Lambda beyond the range of a double, an overflow. `make stability` measures all that. */
 #ifndef NDF_H
 #define NDF_H
 
@@ -117,8 +118,8 @@ double ndf_D(const struct ndf *ndf, struct vec3 m);
 /* ndf_lambda - Smith's Lambda(w), dimensionless: (1/mu) integral over q > mu of (q - mu) P2(q), where mu = cot(theta)
  * and P2 is the density of the slopes along w; anisotropic through sigma^2 = sigma_x^2 cos^2 phi + sigma_y^2 sin^2 phi.
  * Given:   w a unit vector
- * Returns: Lambda >= 0; 0 at normal incidence (but for the rational form); INFINITY for w.z <= 0; NaN in gives NaN
- *          out. */
+ * Returns: Lambda >= 0; 0 at normal incidence (but for the rational form); INFINITY for w.z <= 0, and where K/z
+ *          overflows, for w.z below 1e-275 max(1, sigma) only; NaN in gives NaN out. */
 double ndf_lambda(const struct ndf *ndf, struct vec3 w);
 
 /* ndf_G1 - Smith's masking 1/(1 + Lambda(w)), in [0, 1]: 1 at normal incidence, 0 for w.z <= 0. */

@@ -68,6 +68,16 @@ static inline double ndf_r(const struct ndf *ndf, struct vec3 w)
 	return sqrt(x * x + y * y);
 }
 
+/* From this z on a direction is the normal itself: Lambda is 0 and nothing overflows on the way. */
+#define NDF_Z_NORMAL 1e150
+
+/* z of the notation above, INFINITY from NDF_Z_NORMAL on. */
+static inline double ndf_z(const struct ndf *ndf, struct vec3 w)
+{
+	const double r = ndf_r(ndf, w);
+	return r * NDF_Z_NORMAL <= w.z ? INFINITY : w.z / r;
+}
+
 /* GGX: D = 1 / (pi sigma_x sigma_y cos^4 (1 + q)^2). Here cos^2 (1 + q) is taken as one positive sum. */
 static inline double ggx_D(const struct ndf *ndf, struct vec3 m)
 {
@@ -89,7 +99,7 @@ static inline double ggx_P2(const struct ndf *ndf, double s, double q)
 {
 	(void)ndf;
 	const double root = hypot(1.0, q / s);
-	return 0.5 / s / root / (root * root);
+	return 0.5 / s / root / root / root;
 }
 
 /* GGX: Lambda = (sqrt(1 + 1/z^2) - 1)/2 with numerator and denominator of 1/z kept apart and the subtraction
@@ -121,7 +131,8 @@ static inline double beckmann_tilt(const struct ndf *ndf, double u)
 static inline double beckmann_P2(const struct ndf *ndf, double s, double q)
 {
 	(void)ndf;
-	return exp(-(q / s) * (q / s)) / (s * sqrt(M_PI));
+	const double t = fmin(fabs(q / s), 1e100); /* 0 from 28 on */
+	return isnan(q) ? q : exp(-t * t) / (s * sqrt(M_PI));
 }
 
 /* Steps of the continued fractions below that give all digits, z >= 0.8. */
@@ -137,7 +148,9 @@ static inline int lambda_steps(double z)
  *     exp(-z^2)/(4 sqrt(pi) z) / (1.5 + z^2 - 1*1.5/(3.5 + z^2 - 2*2.5/(5.5 + z^2 - ...))). */
 static inline double beckmann_lambda(const struct ndf *ndf, struct vec3 w)
 {
-	const double z = w.z / ndf_r(ndf, w);
+	const double z = ndf_z(ndf, w);
+	if (z == INFINITY)
+		return 0.0;
 	const double z2 = z * z;
 	const double front = exp(-z2) / (sqrt(M_PI) * z);
 	if (!(z >= LAMBDA_DIRECT_BELOW))

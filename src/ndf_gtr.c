@@ -50,7 +50,10 @@ static double x_below(const struct ndf *ndf, double u)
 	const double span = log_span(ndf), power = 1.0 - ndf->gamma;
 	if (span == 0.0)
 		return u;
-	const double log_v = power == 0.0 ? u * span : log1p(u * expm1(power * span)) / power;
+	const double part = u * expm1(power * span);
+	if (part <= -1.0)
+		return 1.0;
+	const double log_v = power == 0.0 ? u * span : log1p(part) / power;
 	return fmin(expm1(log_v) / expm1(span), 1.0);
 }
 

@@ -49,8 +49,9 @@ static double slope_of(double v)
 static double log_s_below(double B, double C, double u)
 {
 	const double end = log1p(B), target = u * share(B, C, end), p = 1.0 - C;
-	double low = 0.0, high = end;
-	double at = p == 0.0 ? u * end : log1p(u * expm1(p * end)) / p;
+	const double part = u * expm1(p * end);
+	double low = 0.0, high = u > 0.0 ? end : 0.0;
+	double at = p == 0.0 ? u * end : part > -1.0 ? log1p(part) / p : end;
 	for (int i = 0; i < 100 && low < high; i++) {
 		const double excess = share(B, C, at) - target;
 		if (excess > 0.0)
@@ -58,7 +59,8 @@ static double log_s_below(double B, double C, double u)
 		else
 			low = at;
 		const double cosine = 1.0 - expm1(at) / B;
-		const double next = at - excess * B / (cosine * exp(p * at));
+		const double slope = cosine * exp(p * at);
+		const double next = slope > 0.0 ? at - excess * B / slope : -1.0;
 		const double before = at;
 		at = next > low && next < high ? next : 0.5 * (low + high);
 		if (fabs(at - before) <= 1e-15 * at)
@@ -98,7 +100,7 @@ static bool low_prepare(struct ndf *ndf)
 static double low_D(const struct ndf *ndf, struct vec3 m)
 {
 	const double v = (m.x * m.x + m.y * m.y) / (1.0 + m.z);
-	return ndf->A * exp(-ndf->param[1] * log1p(ndf->param[0] * v));
+	return ndf->A * pow(1.0 + ndf->param[0] * v, -ndf->param[1]);
 }
 
 const struct ndf_class ndf_class_low = {

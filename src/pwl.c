@@ -467,7 +467,9 @@ double pwl_G1_trapezoid(const struct pwl *pwl, struct vec3 o)
 /* x - e sin(x) = M in [0, pi], 0 <= e <= 1: Kepler's equation. Convex, so Newton from above comes down steadily. */
 static double kepler(double e, double M)
 {
-	double x = fmin(M_PI, fmin(M / (1.0 - e), 1.3 * cbrt(6.0 * M / e)));
+	double x = M < M_PI * (1.0 - e) ? M / (1.0 - e) : M_PI;
+	if (e > 0.01)
+		x = fmin(x, 1.3 * cbrt(6.0 * M / e));
 	for (int i = 0; i < 100; i++) {
 		const double half = sin(0.5 * x);
 		const double f = (1.0 - e) * x + e * minus_sin(x) - M;
@@ -506,7 +508,7 @@ static struct blend blend_at(const struct pwl *pwl, double phi)
 	return empty ? (struct blend){1.0, 1.0} : blend; /* phi at which nothing is, hit by rounding */
 }
 
-/* Last segment that begins at or below this mass; it is not empty unless mass is all there is. */
+/* Last segment that begins at or below this mass and is not empty. */
 static int find_mass(const struct pwl *pwl, const struct blend *blend, double mass)
 {
 	int low = 0, high = pwl->n_nodes - 1;
@@ -517,6 +519,8 @@ static int find_mass(const struct pwl *pwl, const struct blend *blend, double ma
 		else
 			high = mid;
 	}
+	while (low > 0 && blend_mass(blend, &pwl->nodes[low + 1]) <= blend_mass(blend, &pwl->nodes[low]))
+		low--;
 	return low;
 }
 
@@ -528,7 +532,10 @@ static double solve_segment(double theta, double length, double F, double slope,
 	const double p0 = 0.5 * F * sin(2.0 * theta), p1 = 0.5 * (F + slope * length) * sin(2.0 * (theta + length));
 	const double goal = part * (p0 + p1);
 	double low = 0.0, high = length;
-	double t = length * goal / (p0 + sqrt(fmax(p0 * p0 + (p1 - p0) * goal, 0.0)));
+	if (!(target > 0.0))
+		return 0.0;
+	const double below = p0 + sqrt(fmax(p0 * p0 + (p1 - p0) * goal, 0.0));
+	double t = below > 0.0 ? length * goal / below : 0.5 * length;
 	for (int i = 0; i < 100; i++) {
 		if (!(t >= low && t <= high))
 			t = 0.5 * (low + high);
@@ -537,7 +544,8 @@ static double solve_segment(double theta, double length, double F, double slope,
 			high = t;
 		else
 			low = t;
-		const double step = f / (0.5 * (F + slope * t) * sin(2.0 * (theta + t)));
+		const double density = 0.5 * (F + slope * t) * sin(2.0 * (theta + t));
+		const double step = density > 0.0 ? f / density : INFINITY;
 		if (fabs(step) <= 1e-15 * length || high - low <= 1e-16 * length)
 			break;
 		t -= step;

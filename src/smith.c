@@ -33,6 +33,15 @@ double gaf_smith(enum gaf gaf, double lambda_i, double lambda_o)
 	return gaf == GAF_CORRELATED ? 1.0 / (1.0 + lambda_i + lambda_o) : NAN;
 }
 
+double gaf_G_over_cosines(enum gaf gaf, const struct ndf *ndf, struct vec3 wi, struct vec3 wo)
+{
+	if (!(wi.z > 0.0 && wo.z > 0.0))
+		return 0.0;
+	if (gaf == GAF_UNCORRELATED)
+		return ndf_G1(ndf, wi) / wi.z * (ndf_G1(ndf, wo) / wo.z);
+	return gaf_G(gaf, ndf, wi, wo) / fmin(wi.z, wo.z) / fmax(wi.z, wo.z);
+}
+
 double gaf_G(enum gaf gaf, const struct ndf *ndf, struct vec3 wi, struct vec3 wo)
 {
 	if (!(wi.z > 0.0 && wo.z > 0.0))

@@ -20,6 +20,9 @@ MUST_CHECK enum status gaf_find(const char *name, enum gaf *gaf);
 /* gaf_smith - G of the first two from the Lambda of either direction, >= 0 or INFINITY; NaN for GAF_V_GROOVE. */
 double gaf_smith(enum gaf gaf, double lambda_i, double lambda_o);
 
+/* gaf_G_over_cosines - G/(cos_i cos_o), which does not underflow at grazing angles before it has to. */
+double gaf_G_over_cosines(enum gaf gaf, const struct ndf *ndf, struct vec3 wi, struct vec3 wo);
+
 /* gaf_G - geometric attenuation of light direction wi and view direction wo, unit vectors, in [0, 1];
  * symmetric in the two; 0 when either lies at or below the horizon. Relative error below 2e-15. */
 double gaf_G(enum gaf gaf, const struct ndf *ndf, struct vec3 wi, struct vec3 wo);

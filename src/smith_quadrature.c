@@ -116,10 +116,13 @@ static double turned_away(const struct ndf *ndf, double mu, struct hyperbolic y)
 
 double smith_quadrature_lambda(const struct ndf *ndf, struct vec3 w)
 {
-	const double mu = w.z / hypot(w.x, w.y);
+	const double r = hypot(w.x, w.y);
+	if (r * MU_NORMAL <= w.z)
+		return 0.0;
+	const double mu = w.z / r;
 	if (isnan(mu))
 		return mu;
-	if (mu > MU_NORMAL || P22(ndf, mu) == 0.0)
+	if (P22(ndf, mu) == 0.0)
 		return 0.0;
 	if (mu < MU_GRAZING)
 		return even_integral(ndf, MU_GRAZING, turned_away) * (MU_GRAZING / mu);

@@ -3,10 +3,8 @@
 #include "ndf_formulas.h"
 #include <stddef.h>
 
-/* From here on STD is Beckmann: D differs from it by a factor 1 + q^2/(2 gamma), less than 3e-13 even at 1e-304. */
-#define GAMMA_BECKMANN 1e18
-/* From here on Lambda is 0, as at normal incidence: u^2 would overflow. */
-#define Z_NORMAL 1e150
+/* From here on STD is Beckmann: D differs from it by a factor 1 + q^2/(2 gamma), less than 3e-17 even at 1e-304. */
+#define GAMMA_BECKMANN 1e22
 
 /* Gamma(a + 1/2)/Gamma(a); from 32 on by its asymptotic series, whose eight terms are then good to 1e-15. */
 static double gamma_ratio(double a)
@@ -47,7 +45,20 @@ bool student_t_prepare(struct ndf *ndf, double a)
 
 double student_t_z(const struct ndf *ndf, struct vec3 w)
 {
-	return w.z / ndf_r(ndf, w) * ndf->stretch;
+	return ndf_z(ndf, w) * ndf->stretch;
+}
+
+/* From here on D is written as Beckmann's times a factor: 1 + q/a has no digits left for q. */
+#define GAMMA_LARGE 1e12
+
+/* -gamma ln(1 + q/a) = -q - q (gamma-a)/a + gamma q^2/(2 a^2), the next term being below 1e-15 where D is not 0. */
+static double large_gamma_D(const struct ndf *ndf, struct vec3 m)
+{
+	const double D = beckmann_D(ndf, m);
+	if (!(D > 0.0))
+		return D;
+	const double ratio = ndf_q(ndf, m).hi / ndf->a;
+	return D * ndf->stretch * ndf->stretch * exp(ratio * (0.5 * ndf->gamma * ratio - (ndf->gamma - ndf->a)));
 }
 
 /* D = stretch^2 (1 + q/a)^-gamma / (pi sigma_x sigma_y cos^4), with two of the powers put to the cosines:
@@ -60,6 +71,8 @@ double student_t_D(const struct ndf *ndf, struct vec3 m)
 		return ggx_D(ndf, m);
 	if (is_beckmann(ndf))
 		return beckmann_D(ndf, m);
+	if (gamma > GAMMA_LARGE)
+		return large_gamma_D(ndf, m);
 	const struct dd q = ndf_q(ndf, m);
 	const double ratio = q.hi / a;
 	const double ratio_lo = (fma(-ratio, a, q.hi) + q.lo) / a;
@@ -111,17 +124,18 @@ double student_t_lambda(const struct ndf *ndf, struct vec3 w)
 	if (is_beckmann(ndf))
 		return beckmann_lambda(ndf, w);
 	const double z = student_t_z(ndf, w);
-	if (z > Z_NORMAL)
+	if (z >= NDF_Z_NORMAL)
 		return 0.0;
 	const double a = gamma - 1.0;
-	const double u = z / sqrt(a);
+	const double root_a = sqrt(a), u = z / root_a;
 	const double x = 1.0 / (1.0 + u * u);
 	const double y = u * u * x;
 	const double e = exp(-(gamma - 1.5) * log1p(u * u));
-	const double front = ndf->K * e / ((2.0 * gamma - 3.0) * u);
+	/* By z, as u has no digits left where it is denormal. */
+	const double front = ndf->K * root_a / (2.0 * gamma - 3.0) * e / z;
 	if (!(z >= LAMBDA_DIRECT_BELOW))
 		return (front - 0.5) + ndf->K * u * e * x * lambda_series(gamma, y);
-	return front / (2.0 * a) * lambda_fraction(a, x, y, lambda_steps(z));
+	return front * (lambda_fraction(a, x, y, lambda_steps(z)) / (2.0 * a));
 }
 
 double student_t_P2(const struct ndf *ndf, double s, double q)
@@ -130,8 +144,9 @@ double student_t_P2(const struct ndf *ndf, double s, double q)
 		return ggx_P2(ndf, s, q);
 	if (is_beckmann(ndf))
 		return beckmann_P2(ndf, s, q);
-	const double t = q / s / sqrt(ndf->a);
-	return ndf->K * exp((0.5 - ndf->gamma) * log1p(t * t)) / sqrt(ndf->a) / s;
+	const double t = fabs(q / s / sqrt(ndf->a));
+	const double log_v = t > 1e100 ? 2.0 * log(t) : log1p(t * t);
+	return ndf->K * exp((0.5 - ndf->gamma) * log_v) / sqrt(ndf->a) / s;
 }
 
 /* The share (1 + s^2/a)^(1-gamma) of the normals is steeper than s. */

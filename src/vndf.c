@@ -75,7 +75,7 @@ static struct scaled_slopes ggx_slopes(double cos_i, double sin_i, double u1, do
  * slopes x and -x share cos_i P2(x) of it. */
 static struct scaled_slopes beckmann_slopes(double cos_i, double sin_i, double u1, double u2)
 {
-	const double cot = cos_i / sin_i;
+	const double cot = cos_i < 1e100 * sin_i ? cos_i / sin_i : 1e100; /* no facet is as steep as that */
 	const double erf_cot = erf(cot), erfc_cot = erfc(cot);
 	const double by_sine = 0.5 * M_2_SQRTPI * 0.5 * sin_i * exp(-cot * cot);
 	const double by_cosine = 0.5 * cos_i * erfc_cot;
@@ -104,7 +104,8 @@ static struct scaled_slopes std_slopes(const struct ndf *ndf, double cos_i, doub
 {
 	const double a = ndf->gamma - 1.0;
 	const double scale = sqrt(a);
-	const struct student along = {ndf->gamma - 0.5, ndf->K, cos_i, scale * sin_i};
+	/* Along the normal all facets are seen alike. */
+	const struct student along = {ndf->gamma - 0.5, ndf->K, cos_i, sin_i > 1e-160 ? scale * sin_i : 0.0};
 	const struct student across = {ndf->gamma, a * M_1_PI / ndf->K, 1.0, 0.0};
 	const double w = student_quantile(&along, u1);
 	const double v = student_quantile(&across, u2);

@@ -91,10 +91,12 @@ struct side {
 static double side_mass(const struct side *side, const struct point *at)
 {
 	const struct student *s = side->student;
-	const double X = at->root_y / at->root_x;
-	const double left = side->slope_max - X;
-	if (left * (sqrt(s->p) + 2.0 * s->p * X * at->x) < 1e-6)
-		return left > 0.0 ? 0.5 * s->s * left * left * s->k * at->power * at->x : 0.0;
+	if (isfinite(side->slope_max)) {
+		const double X = at->root_y / at->root_x;
+		const double left = side->slope_max - X;
+		if (left * (sqrt(s->p) + 2.0 * s->p * X * at->x) < 1e-6)
+			return left > 0.0 ? 0.5 * s->s * left * left * s->k * at->power * at->x : 0.0;
+	}
 	const double moment = s->s > 0.0 ? s->s * upper_moment(s, at) : 0.0;
 	return s->c * upper_tail(s, at) + side->sign * moment + side->excess;
 }
@@ -109,7 +111,9 @@ static double side_step(const struct side *side, double t, double *error)
 	const double mass = side_mass(side, &at);
 	const double t_over_y = t > 0.0 ? t / at.root_y : 1.0;
 	const double density = s->k * t_over_y * at.power * weight;
-	*error = log(mass / side->target);
+	*error = mass > 0.0 ? log(mass / side->target) : -INFINITY;
+	if (!(mass > 0.0 && density > 0.0))
+		return INFINITY; /* nowhere: halve the interval */
 	const double newton = *error * mass / density;
 	const double curvature = (t < 0.03 ? 0.5 * t : 1.0 / t - t * at.x / at.y) - 2.0 * (s->p - 1.0) * t +
 				 t_over_y * at.root_x * (side->sign * s->s * at.root_x - s->c * at.root_y) / weight +
@@ -169,7 +173,7 @@ static double right_quantile(const struct student *student, struct side *side, d
 double student_quantile(const struct student *student, double u)
 {
 	const double p = student->p;
-	const double slope_max = student->c / student->s; /* infinite for s = 0 */
+	const double slope_max = student->s > 0.0 ? student->c / student->s : INFINITY;
 	const double t_max = slope_max < 1e150 ? sqrt(log1p(slope_max * slope_max)) : sqrt(2.0 * log(slope_max));
 	struct side right = {student, -1.0, 0.0, slope_max, t_max, 0.0};
 	double moment = 0.0;
@@ -183,5 +187,7 @@ double student_quantile(const struct student *student, double u)
 	if (u * total <= middle)
 		return -left_quantile(student, u * total, moment);
 	right.target = (1.0 - u) * total;
-	return right_quantile(student, &right, right.target / (total - middle));
+	/* Of a weight that ends close to 0 rounding leaves nothing on that side. */
+	const double half = total - middle;
+	return right_quantile(student, &right, right.target < half ? right.target / half : 1.0);
 }
