@@ -46,7 +46,7 @@ enum status algorithm_find(const char *name, const struct algorithm **algorithm)
 }
 
 /* Coordinates of a joint search: the shape's, then kd, then ks. */
-enum { DIMS_MAX = SEARCH_DIMS + 2 * SAMPLES_CHANNELS };
+enum { DIMS_MAX = SPACE_DIMS + 2 * SAMPLES_CHANNELS };
 
 /* Beyond any material. Without a bound kd and ks are searched as k/(1 + k), up to this k. */
 static const double most_factor = 1e6;
@@ -56,7 +56,8 @@ struct run {
 	const struct fit_options *options;
 	const struct ndf_class *class;
 	struct objective objective;
-	int shape_dims, dims;
+	struct space space; /* of the shape, the first coordinates of */
+	int dims;
 	double lo[DIMS_MAX], hi[DIMS_MAX];
 	double begin_s;
 	bool stopped; /* out of time, or cancelled */
@@ -76,11 +77,14 @@ static void set_up_space(struct run *r)
 {
 	const struct fit_options *o = r->options;
 
-	r->dims = r->shape_dims = search_bounds(o, r->class, r->lo, r->hi);
+	space_init(&r->space, o, r->class);
+	r->dims = r->space.dims;
+	memcpy(r->lo, r->space.lo, sizeof r->space.lo);
+	memcpy(r->hi, r->space.hi, sizeof r->space.hi);
 	if (!r->algorithm->joint)
 		return;
 	r->dims += factors(o, o->diffuse) + factors(o, o->specular);
-	for (int d = r->shape_dims; d < r->dims; d++) {
+	for (int d = r->space.dims; d < r->dims; d++) {
 		r->lo[d] = 0;
 		r->hi[d] = o->unbounded ? most_factor / (1 + most_factor) : 1;
 	}
@@ -104,12 +108,12 @@ static double error_at(struct run *r, const double x[], struct shape *shape, str
 {
 	const struct fit_options *o = r->options;
 	double inside[DIMS_MAX];
-	const double *factor = inside + r->shape_dims;
+	const double *factor = inside + r->space.dims;
 
 	/* PRAXIS steps over the bounds, others by an ulp. */
 	for (int d = 0; d < r->dims; d++)
 		inside[d] = fmin(fmax(x[d], r->lo[d]), r->hi[d]);
-	*shape = search_shape(o, r->class, inside);
+	*shape = space_shape(&r->space, inside);
 	if (!r->algorithm->joint)
 		return objective_eval(&r->objective, shape, 1e-6, false, linear);
 	read_factors(o, o->diffuse, &factor, linear->kd);

@@ -11,6 +11,7 @@ enum status objective_init(struct objective *o, const struct table *table, const
 		.table = table, .options = options, .class = class, .kernel = kernel_pick(), .threads = threads};
 	o->tabulated.sigma = NAN;
 	objective_forget(o);
+	objective_unpin(o);
 	o->s = aligned_alloc(64, (size_t)table->n_blocks * KERNEL_BLOCK * sizeof *o->s);
 	o->sums = malloc((size_t)table->n_blocks * sizeof *o->sums);
 	if (!o->s || !o->sums || masking_init(&o->masking, table->geometry->q_min, density) != STATUS_OK) {
@@ -166,44 +167,77 @@ enum status objective_lobe(struct objective *o, const struct shape *shape)
 	return STATUS_OK;
 }
 
-/* The upper end of kd and ks: far beyond any material when unbounded. */
-static double most_albedo(const struct fit_options *options)
+double objective_most(const struct fit_options *options)
 {
 	return options->unbounded ? 1e6 : 1;
+}
+
+/* The table is evaluated in float: kd/pi is one. */
+static double diffuse_value(double kd)
+{
+	return (double)(float)(kd / M_PI);
+}
+
+void objective_unpin(struct objective *o)
+{
+	const double most = objective_most(o->options);
+
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		o->box[c] = (struct objective_box){
+			{0, 0}, {o->options->diffuse ? diffuse_value(most) : 0, o->options->specular ? most : 0}};
+}
+
+void objective_pin(struct objective *o, int channel, bool specular, double value)
+{
+	const double at = specular ? (double)(float)value : diffuse_value(value);
+
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		if (c == channel || o->options->gray)
+			o->box[c].lo[specular] = o->box[c].hi[specular] = at;
 }
 
 /* With one kd and ks for all channels there is one problem, their sum; else one a channel. */
 static void start(const struct objective *o, struct l1 problem[], int n_problems, double tolerance, bool certify)
 {
-	const struct fit_options *options = o->options;
 	const double *sum = o->table->sum;
-	const double most = most_albedo(options);
-	const double lo[2] = {0, 0},
-		     hi[2] = {options->diffuse ? (double)(float)(most / M_PI) : 0, options->specular ? most : 0};
 
 	for (int p = 0; p < n_problems; p++) {
+		const struct objective_box *box = &o->box[p];
 		const double scale = n_problems == 1 ? sum[0] + sum[1] + sum[2] : sum[p];
-		const double first[2] = {o->start.kd[p] / M_PI, o->start.ks[p]};
+		const double known[2] = {o->start.kd[p] / M_PI, o->start.ks[p]};
+		const bool cold = isnan(o->start.kd[0]), at_zero = box->lo[0] == 0 && box->lo[1] == 0;
 
-		l1_start(&problem[p], lo, hi, isnan(o->start.kd[0]) ? NULL : first, scale, tolerance, certify);
+		l1_start(&problem[p], box->lo, box->hi,
+			 !cold     ? known
+			 : at_zero ? NULL
+				   : box->lo,
+			 scale, tolerance, certify);
 	}
+}
+
+/* On the bound to the last bit: kd is then the bound itself. */
+static double kd_of(const struct objective *o, double diffuse)
+{
+	const double most = objective_most(o->options);
+
+	return diffuse < diffuse_value(most) ? diffuse * M_PI : most;
 }
 
 static void finish(const struct objective *o, const struct l1 problem[], int n_problems, struct linear *linear)
 {
 	double sum = 0;
 
-	linear->error = linear->lower_bound = 0;
+	*linear = (struct linear){.error = 0};
 	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
 		const struct l1 *p = &problem[n_problems == 1 ? 0 : c];
 
-		/* On the bound to the last bit: kd is then the bound itself. */
-		linear->kd[c] = p->best[0] < p->hi[0] ? p->best[0] * M_PI : p->hi[0] > 0 ? most_albedo(o->options) : 0;
+		linear->kd[c] = kd_of(o, p->best[0]);
 		linear->ks[c] = p->best[1];
 		sum += o->table->sum[c];
 	}
 	for (int p = 0; p < n_problems; p++) {
-		linear->error += problem[p].error / sum;
+		linear->channel[p] = problem[p].error / sum;
+		linear->error += linear->channel[p];
 		if (problem[p].certify)
 			linear->lower_bound += l1_lower_bound(&problem[p]) / sum;
 	}
@@ -226,8 +260,10 @@ double objective_eval(struct objective *o, const struct shape *shape, double tol
 	struct kernel_sums total[SAMPLES_CHANNELS];
 	bool lobe = true, going = true;
 
-	if (tabulate(o, shape) != STATUS_OK)
+	if (tabulate(o, shape) != STATUS_OK) {
+		*linear = (struct linear){.error = OBJECTIVE_NO_FIT};
 		return OBJECTIVE_NO_FIT;
+	}
 	fill_rows(o, shape);
 	start(o, problem, n_problems, tolerance, certify);
 	while (going) {

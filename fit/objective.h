@@ -20,8 +20,9 @@ MUST_CHECK enum status shape_ndf(const struct shape *shape, const struct ndf_cla
 /* struct linear - the parameters in which it is, and how good they are. */
 struct linear {
 	double kd[SAMPLES_CHANNELS], ks[SAMPLES_CHANNELS];
-	double error;       /* E */
-	double lower_bound; /* no kd, ks of this shape goes below it (certified looks only; else 0) */
+	double error;                     /* E */
+	double channel[SAMPLES_CHANNELS]; /* the part of E that each has; of a gray fit the first stands for all */
+	double lower_bound;               /* no kd, ks of this shape goes below it (certified looks only; else 0) */
 };
 
 /* An error that no fit can have (kd = ks = 0 gives 1), finite as nlopt wants it. */
@@ -42,6 +43,9 @@ struct objective {
 	struct shape tabulated; /* sigma and gamma that masking and D stand for */
 	long passes;            /* over the table, so far */
 	struct linear start;    /* where the next inner solve begins: the last one's end */
+	struct objective_box {
+		double lo[2], hi[2]; /* of kd/pi and ks */
+	} box[SAMPLES_CHANNELS];     /* as the options have it, but for what is pinned */
 };
 
 /* objective_init - buffers for one table and one NDF. */
@@ -51,6 +55,13 @@ MUST_CHECK enum status objective_init(struct objective *objective, const struct 
 void objective_free(struct objective *objective);
 /* objective_forget - lets the next inner solve begin from nothing, not where the last one ended. */
 void objective_forget(struct objective *objective);
+
+/* objective_most - the upper end of kd and ks: far beyond any material when unbounded. */
+double objective_most(const struct fit_options *options);
+/* objective_pin - holds kd (or ks) of a channel, of all of them in a gray fit, at a value from now on;
+ * objective_unpin - all are free again. */
+void objective_pin(struct objective *objective, int channel, bool specular, double value);
+void objective_unpin(struct objective *objective);
 
 /* objective_use - from now on the given isotropic distribution, whatever sigma and gamma a shape has; *ndf is only read
  * during the call. */

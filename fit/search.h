@@ -3,9 +3,9 @@
 #ifndef SEARCH_H
 #define SEARCH_H
 
-#include "objective.h"
+#include "local.h"
 
-enum { SEARCH_LEVELS = 4, SEARCH_DIMS = 4, SEARCH_GIVEN = 8 };
+enum { SEARCH_LEVELS = 4, SEARCH_GIVEN = 8 };
 
 /* struct levels - the table of a material and its thinned copies, coarsest first; the last is the full table. */
 struct levels {
@@ -16,6 +16,12 @@ struct levels {
 MUST_CHECK enum status levels_init(struct levels *levels, struct table *full);
 void levels_free(struct levels *levels);
 
+/* struct evidence - what the coarsest table has shown of the shapes that were not chosen; E as estimated there. */
+struct evidence {
+	struct place slice[SPACE_DIMS][SPACE_VALUES]; /* the scan's best for each value of each axis */
+	double least_without[SAMPLES_CHANNELS];       /* the least E that the other two channels have had together */
+};
+
 /* struct found - where a search ended. */
 struct found {
 	struct shape shape;
@@ -23,17 +29,12 @@ struct found {
 	int starts, starts_agreeing; /* local searches on the coarsest table; those within 0.1 % of the best there */
 	bool limited;                /* a limit on evaluations stopped the last local search */
 	long evaluations;
-	long passes; /* over the full table */
+	long passes;              /* over the full table */
+	struct evidence evidence; /* search_run()'s, if it had anything to search */
 };
 
 /* search_clock - seconds of a clock that only runs forward. */
 double search_clock(void);
-
-/* search_bounds - the coordinates in which the free parameters are searched, for other searches of the same space: how
- * many there are (0 .. SEARCH_DIMS), and the bounds of each. */
-int search_bounds(const struct fit_options *options, const struct ndf_class *class, double lo[], double hi[]);
-/* search_shape - the shape at a point in these coordinates; fixed parameters as the options have them. */
-struct shape search_shape(const struct fit_options *options, const struct ndf_class *class, const double x[]);
 
 /* search_run - minimises E over the free parameters among sigma, gamma, ior and k, wherever its minimum is.
  * Errors:  STATUS_NO_MEMORY, STATUS_INTERRUPTED */
