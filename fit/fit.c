@@ -3,7 +3,7 @@
 #include "free_form.h"
 #include "metrics.h"
 #include "names.h"
-#include "search.h"
+#include "undetermined.h"
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
@@ -77,7 +77,17 @@ struct job {
 	const struct samples *samples;
 	const struct fit_options *options;
 	struct levels levels;
+	struct evidence *evidence; /* of the last search of each class, by its place in the table of distributions */
 };
+
+static int place_of(const struct ndf_class *class)
+{
+	int place = 0;
+
+	while (ndf_at(place) != class)
+		place++;
+	return place;
+}
 
 static bool on_bound(double value, double low, double high)
 {
@@ -189,6 +199,8 @@ static enum status fit_alone(const struct job *job, const struct ndf_class *clas
 
 	if (status == STATUS_OK)
 		status = result_of(job, class, &found, r);
+	if (status == STATUS_OK && !job->options->algorithm)
+		job->evidence[place_of(class)] = found.evidence;
 	r->seconds = search_clock() - begin;
 	return status;
 }
@@ -307,10 +319,11 @@ static enum status fit_each_gamma(const struct job *job, const struct ndf_class 
 	struct fit_options options = *job->options;
 	struct job own = *job;
 	enum status status = STATUS_OK;
+	struct evidence *evidence = &job->evidence[place_of(class)], best_evidence = *evidence;
 	struct fit_result one = {0};
 	struct ndf ndf;
 	long evaluations = 0, passes = 0;
-	double seconds = 0;
+	double seconds = 0, worst = 0;
 
 	own.options = &options;
 	*r = (struct fit_result){.error = INFINITY};
@@ -323,9 +336,15 @@ static enum status fit_each_gamma(const struct job *job, const struct ndf_class 
 		evaluations += one.evaluations;
 		passes += one.passes;
 		seconds += one.seconds;
-		if (status == STATUS_OK && one.error < r->error)
+		if (status == STATUS_OK && one.error < r->error) {
 			*r = one;
+			best_evidence = *evidence;
+		}
+		worst = fmax(worst, one.error);
 	}
+	*evidence = best_evidence;
+	if (worst <= (1 + FIT_UNDETERMINED) * r->error + FIT_UNDETERMINED_FLOOR)
+		r->undetermined = BOUND_GAMMA;
 	r->evaluations = evaluations;
 	r->passes = passes;
 	r->seconds = seconds;
@@ -363,6 +382,7 @@ static enum status fit_free_form(const struct job *job, struct nested *nested, s
 {
 	const double begin = search_clock();
 	struct nested fresh = {.done = {false}};
+	struct evidence evidence[FIT_NDFS_MAX] = {{.slice = {{{.error = 0}}}}};
 	struct fit_options exact = *job->options;
 	struct job own = *job;
 	struct cook_torrance starts[5];
@@ -375,6 +395,8 @@ static enum status fit_free_form(const struct job *job, struct nested *nested, s
 	own.options = &exact;
 	const bool same = job->options->lambda == LAMBDA_EXACT && isnan(job->options->gamma);
 
+	if (!same)
+		own.evidence = evidence;
 	status = fit_starts(&own, same ? nested : &fresh, starts, &n_starts);
 	if (status != STATUS_OK)
 		return status;
@@ -425,10 +447,8 @@ static enum status fit_class(const struct job *job, const struct ndf_class *clas
 			     struct fit_result *r)
 {
 	enum status status = STATUS_OK;
-	int place = 0;
+	const int place = place_of(class);
 
-	while (ndf_at(place) != class)
-		place++;
 	if (!nested->class_done[place]) {
 		status = fit_anew(job, class, nested, &nested->of_class[place]);
 		/* A table belongs to one result only. */
@@ -438,10 +458,46 @@ static enum status fit_class(const struct job *job, const struct ndf_class *clas
 	return status;
 }
 
+/* BOUND_GAMMA where the fits of the nested models have shown already that gamma is determined. */
+static unsigned gamma_settled(const struct job *job, const struct ndf_class *class, const struct nested *nested,
+			      const struct fit_result *r)
+{
+	const struct nesting *nesting = nesting_of(job, class);
+	const double limit = (1 + FIT_UNDETERMINED) * r->error + FIT_UNDETERMINED_FLOOR;
+
+	for (int n = 0; nesting && n < NESTED; n++)
+		if (!isnan(nesting->gamma[n]) && nested->result[n].error > limit)
+			return BOUND_GAMMA;
+	return 0;
+}
+
+/* Adds to a fit which of its parameters the data leave open. */
+static enum status find_undetermined(const struct job *job, const struct ndf_class *class, const struct nested *nested,
+				     struct fit_result *r)
+{
+	const double begin = search_clock();
+	const struct cook_torrance *m = &r->model;
+	const unsigned settled = gamma_settled(job, class, nested, r);
+	const struct shape best = {m->ndf.sigma_x, m->ndf.gamma, m->n, m->k};
+	struct fit_options options = *job->options;
+	enum status status = STATUS_OK;
+	unsigned found = 0;
+
+	if (has_sparse_lambda(job, class))
+		options.gamma = m->ndf.gamma; /* the other values have been fitted */
+	if (!options.algorithm)
+		status = undetermined_find(&job->levels, &options, class, &job->evidence[place_of(class)], &best,
+					   r->error, settled, &found, &r->evaluations);
+	r->undetermined |= found;
+	r->seconds += search_clock() - begin;
+	return status;
+}
+
 enum status fit_run(const struct fit_context *context, const struct samples *samples, const struct fit_options *options,
 		    struct fit_result *results, struct error *error)
 {
-	struct job job = {.context = context, .samples = samples, .options = options};
+	struct evidence evidence[FIT_NDFS_MAX] = {{.slice = {{{.error = 0}}}}};
+	struct job job = {.context = context, .samples = samples, .options = options, .evidence = evidence};
 	struct nested nested = {.done = {false}};
 	struct table full;
 	enum status status = table_init(&full, &context->geometry, samples, options->threads);
@@ -456,8 +512,11 @@ enum status fit_run(const struct fit_context *context, const struct samples *sam
 		return error_set(error, status, "%s", status_str(status));
 	for (int n = 0; n < options->n_ndf; n++)
 		results[n].pwl = NULL;
-	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++)
+	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++) {
 		status = fit_class(&job, options->ndf[n], &nested, &results[n]);
+		if (status == STATUS_OK)
+			status = find_undetermined(&job, options->ndf[n], &nested, &results[n]);
+	}
 	for (int n = 0; n < options->n_ndf && status != STATUS_OK; n++)
 		fit_result_free(&results[n]);
 	levels_free(&job.levels);

@@ -100,6 +100,11 @@ enum fit_bound {
 	BOUND_K = 1 << 9,
 };
 
+/* A parameter is undetermined when, at every value of its domain, with the other parameters refitted, E is at most
+ * (1 + FIT_UNDETERMINED) times that of the fit, or FIT_UNDETERMINED_FLOOR above it: E near 0 is rounding. */
+#define FIT_UNDETERMINED 1e-3
+#define FIT_UNDETERMINED_FLOOR 1e-6
+
 struct fit_result {
 	struct cook_torrance model; /* parameters; n is meaningless for FRESNEL_NONE or without a specular term */
 	struct pwl *pwl;            /* pl: the table of model.ndf, owned by the result; else NULL */
@@ -110,8 +115,13 @@ struct fit_result {
 	enum fit_end end;
 	int starts, starts_agreeing; /* local searches run; those that ended within 0.1 % of the best */
 	unsigned at_bound;           /* enum fit_bound */
-	long evaluations;            /* shapes evaluated, on thinned and full tables together */
-	long passes;                 /* over the full table, those of kd and ks included */
+	/* The free parameters that are undetermined, enum fit_bound: shown at every value that the scan has of them
+	 * and at the ends of their domain (of gamma's, 1000), while one where no refit comes near is taken as proof of the
+	 * contrary. In a gray fit kd and ks have three bits each, all or none. Of pl: ior and k only, and these only
+	 * when E is no higher without a specular term. None when another algorithm than the default one was used. */
+	unsigned undetermined;
+	long evaluations; /* shapes evaluated, on thinned and full tables together */
+	long passes;      /* over the full table, those of kd and ks included */
 	double seconds;
 };
 

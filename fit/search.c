@@ -38,8 +38,7 @@ struct search {
 	struct place known; /* found before and in need of beating; its error is INFINITY when there is none */
 	double begin_s;
 	const char *stage;
-	double stage_best;         /* least error of this stage */
-	struct evidence *evidence; /* what the coarsest table shows; NULL on the others */
+	double stage_best; /* least error of this stage */
 };
 
 double search_clock(void)
@@ -56,14 +55,6 @@ static void begin_stage(struct search *s, const char *stage)
 	s->stage_best = INFINITY;
 }
 
-/* The least error of the other channels, each left out in turn. */
-static void note_channels(struct evidence *evidence, const struct linear *linear)
-{
-#pragma omp critical(search_evidence)
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		evidence->least_without[c] = fmin(evidence->least_without[c], linear->error - linear->channel[c]);
-}
-
 /* Counts an evaluation and tells the trace, if there is one, of a better shape. */
 static void note(void *user, const struct shape *shape, const struct linear *linear)
 {
@@ -71,8 +62,6 @@ static void note(void *user, const struct shape *shape, const struct linear *lin
 	const double error = linear->error;
 
 	s->evaluations++;
-	if (s->evidence)
-		note_channels(s->evidence, linear);
 	if (!s->options->trace)
 		return;
 #pragma omp critical(search_trace)
@@ -390,7 +379,7 @@ static void note_slices(const struct search *s, const struct place *grid, struct
 }
 
 /* The places to start from: the valleys of a scan. Returns how many, 0 on failure. */
-static int first_places(struct search *s, struct place place[], enum status *status)
+static int first_places(struct search *s, struct place place[], struct evidence *evidence, enum status *status)
 {
 	struct place *grid = calloc((size_t)grid_size(s, 0), sizeof *grid);
 	int count = 0;
@@ -398,7 +387,7 @@ static int first_places(struct search *s, struct place place[], enum status *sta
 	begin_stage(s, "scan");
 	*status = grid ? scan(s, grid) : STATUS_NO_MEMORY;
 	if (*status == STATUS_OK) {
-		note_slices(s, grid, s->evidence);
+		note_slices(s, grid, evidence);
 		count = pick_starts(s, grid, place);
 		if (count < 0)
 			*status = STATUS_NO_MEMORY;
@@ -422,7 +411,6 @@ static int descend(struct search *s, struct place place[], int count, struct fou
 			count += n_random;
 		}
 		begin_stage(s, stages[level].name);
-		s->evidence = level == 0 ? &found->evidence : NULL;
 		if (count > 0)
 			*status = refine_all(s, level, place, count, found);
 		if (level <= 1)
@@ -453,11 +441,8 @@ enum status search_run(const struct levels *levels, const struct fit_options *op
 	int count = 1;
 
 	*found = (struct found){.starts = 1, .starts_agreeing = s.space.dims == 0};
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		found->evidence.least_without[c] = INFINITY;
 	if (s.space.dims > 0 && status == STATUS_OK) {
-		s.evidence = &found->evidence;
-		count = first_places(&s, place, &status);
+		count = first_places(&s, place, &found->evidence, &status);
 		found->starts = count + options->starts;
 		count = descend(&s, place, count, found, &status);
 	}
@@ -475,11 +460,7 @@ enum status search_estimate(const struct levels *levels, const struct fit_option
 	struct place place[MOST_STARTS + 1] = {{.error = 0}};
 	struct found found = {.starts = 0};
 	enum status status = STATUS_OK;
-	int count = 1;
-
-	s.evidence = &found.evidence;
-	if (s.space.dims > 0)
-		count = first_places(&s, place, &status);
+	int count = s.space.dims > 0 ? first_places(&s, place, &found.evidence, &status) : 1;
 
 	for (int level = 0; level < 2 && status == STATUS_OK && s.space.dims > 0; level++) {
 		if (level > 0)

@@ -16,10 +16,10 @@ struct levels {
 MUST_CHECK enum status levels_init(struct levels *levels, struct table *full);
 void levels_free(struct levels *levels);
 
-/* struct evidence - what the coarsest table has shown of the shapes that were not chosen; E as estimated there. */
+/* struct evidence - what the scan of the coarsest table has shown of the shapes that were not chosen: the best for each
+ * value of each axis of the space. */
 struct evidence {
-	struct place slice[SPACE_DIMS][SPACE_VALUES]; /* the scan's best for each value of each axis */
-	double least_without[SAMPLES_CHANNELS];       /* the least E that the other two channels have had together */
+	struct place slice[SPACE_DIMS][SPACE_VALUES];
 };
 
 /* struct found - where a search ended. */

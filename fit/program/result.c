@@ -182,16 +182,17 @@ static void set_metrics(struct row *row, const struct fit_metrics *metrics)
 	set_number(row, RESULT_LOG_ERROR, metrics->log_error);
 }
 
-enum { BOUNDS_SIZE = 64 };
+enum { NAMES_SIZE = 64, STATUS_SIZE = NAMES_SIZE + 16 };
 
-static const char *bounds_text(char text[BOUNDS_SIZE], unsigned at_bound)
+/* The names of enum fit_bound's bits. */
+static const char *names_text(char text[NAMES_SIZE], unsigned bits)
 {
 	static const char *const name[] = {"sigma", "gamma", "ior",  "kd_r", "kd_g",
 					   "kd_b",  "ks_r",  "ks_g", "ks_b", "k"};
 	char *at = text;
 	*at = '\0';
 	for (size_t b = 0; b < sizeof name / sizeof *name; b++) {
-		if (!(at_bound & 1u << b))
+		if (!(bits & 1u << b))
 			continue;
 		if (at > text)
 			*at++ = ';';
@@ -200,12 +201,22 @@ static const char *bounds_text(char text[BOUNDS_SIZE], unsigned at_bound)
 	return text;
 }
 
+static const char *status_text(char text[STATUS_SIZE], const struct fit_result *result)
+{
+	char names[NAMES_SIZE];
+	if (result->end == FIT_LIMIT)
+		return "limit";
+	if (!result->undetermined)
+		return "converged";
+	snprintf(text, STATUS_SIZE, "undetermined: %s", names_text(names, result->undetermined));
+	return text;
+}
+
 enum status result_add(struct csv_table *table, const struct result_source *source, const struct fit_options *options,
 		       const struct fit_result *result)
 {
-	char params[PARAMS_SIZE] = "", bounds[BOUNDS_SIZE];
-	struct row *row =
-		row_new(source, options, result->model.ndf.class, result->end == FIT_CONVERGED ? "converged" : "limit");
+	char params[PARAMS_SIZE] = "", bounds[NAMES_SIZE], text[STATUS_SIZE];
+	struct row *row = row_new(source, options, result->model.ndf.class, status_text(text, result));
 	if (!row)
 		return STATUS_NO_MEMORY;
 	set_number(row, RESULT_ERROR, result->error);
@@ -213,7 +224,7 @@ enum status result_add(struct csv_table *table, const struct result_source *sour
 	set_metrics(row, &result->metrics);
 	set_number(row, RESULT_STARTS, result->starts);
 	set_number(row, RESULT_STARTS_AGREEING, result->starts_agreeing);
-	row->cell[RESULT_AT_BOUND] = bounds_text(bounds, result->at_bound);
+	row->cell[RESULT_AT_BOUND] = names_text(bounds, result->at_bound);
 	set_number(row, RESULT_EVALUATIONS, (double)result->evaluations);
 	set_number(row, RESULT_SECONDS, result->seconds);
 	return row_finish(row, table, source->path);
