@@ -289,7 +289,7 @@ static enum status factor(struct inquiry *q, int channel, bool specular, bool *u
 	enum status status = STATUS_OK;
 
 	/* Where that is likely it saves the refits. */
-	if (q->rise_of_best[specular][channel] < 2 * FIT_UNDETERMINED * q->coarse)
+	if (q->coarse + q->rise_of_best[specular][channel] <= limit_of(1, q->coarse))
 		status = reaches_both_ends(q, channel, specular, undetermined);
 	if (status != STATUS_OK || *undetermined)
 		return status;

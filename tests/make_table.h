@@ -26,8 +26,10 @@ static inline struct cook_torrance make_model(const char *ndf, double sigma, dou
 	return model;
 }
 
-/* The model's values at every entry above the horizon, times 1 + noise * uniform(-1, 1). */
-static inline struct samples make_table(const struct cook_torrance *model, int n_phi_d, enum bins bins, double noise)
+/* The model's values at every entry above the horizon whose phi_d index divides by `step`, times
+ * 1 + noise * uniform(-1, 1); the others are masked. */
+static inline struct samples make_sparse_table(const struct cook_torrance *model, int n_phi_d, enum bins bins,
+					       double noise, int step)
 {
 	struct samples samples;
 
@@ -38,7 +40,7 @@ static inline struct samples make_table(const struct cook_torrance *model, int n
 		for (int j = 0; j < SAMPLES_THETA_D; j++) {
 			unsigned seed = (unsigned)(i * 91 + j);
 
-			for (int k = 0; k < n_phi_d; k++) {
+			for (int k = 0; k < n_phi_d; k += step) {
 				const size_t at = (size_t)(j + SAMPLES_THETA_D * i) * (size_t)n_phi_d + (size_t)k;
 				struct vec3 wi, wo;
 				double f[3];
@@ -53,6 +55,11 @@ static inline struct samples make_table(const struct cook_torrance *model, int n
 			}
 		}
 	return samples;
+}
+
+static inline struct samples make_table(const struct cook_torrance *model, int n_phi_d, enum bins bins, double noise)
+{
+	return make_sparse_table(model, n_phi_d, bins, noise, 1);
 }
 
 #endif

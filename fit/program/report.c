@@ -163,6 +163,18 @@ static const char *rgb_text(char text[SHOWN_SIZE], char *const *row, enum result
 	return text;
 }
 
+/* A status that is not the usual one. */
+static void print_remark(FILE *file, const char *status)
+{
+	char text[SHOWN_SIZE];
+	if (!strcmp(status, "limit")) {
+		fputs("  (stopped by a limit)", file);
+	} else if (strcmp(status, "converged") != 0) {
+		text_quote(status, text, sizeof text);
+		fprintf(file, "  (%s)", text);
+	}
+}
+
 static void print_fit(FILE *file, char *const *row)
 {
 	static const struct {
@@ -191,8 +203,9 @@ static void print_fit(FILE *file, char *const *row)
 	}
 	fprintf(file, "  %-20s", rgb_text(text, row, RESULT_KD_R));
 	fprintf(file, "  %-20s", rgb_text(text, row, RESULT_KS_R));
-	fprintf(file, "%s%s%s\n", *row[RESULT_AT_BOUND] ? "  " : "", row[RESULT_AT_BOUND],
-		strcmp(row[RESULT_STATUS], "limit") ? "" : "  (stopped by a limit)");
+	fprintf(file, "%s%s", *row[RESULT_AT_BOUND] ? "  " : "", row[RESULT_AT_BOUND]);
+	print_remark(file, row[RESULT_STATUS]);
+	fputc('\n', file);
 }
 
 void report_fits(FILE *file, const struct csv_table *results, bool heading)

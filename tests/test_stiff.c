@@ -1,0 +1,393 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Fits of hard tables, made in memory: each ends after a bounded number of looks, below every simpler model, and says what
+ * it cannot know. Every twelfth phi_d stands for all of them, and some cases are left out, unless the environment has
+ * STDFIT_STABILITY=1: then the tables are whole, random starts must find nothing better, and it takes minutes. */
+#include "check.h"
+#include "fit.h"
+#include "make_table.h"
+#include "run_fit.h"
+
+static bool thorough(void)
+{
+	const char *set = getenv("STDFIT_STABILITY");
+
+	return set && *set == '1';
+}
+
+static struct samples table_of(const struct cook_torrance *model)
+{
+	return make_sparse_table(model, 180, BINS_NODE, 0, thorough() ? 1 : 12);
+}
+
+static struct cook_torrance model_of(const char *ndf, double sigma, double gamma, double n, double kd, double ks)
+{
+	struct cook_torrance model = make_model(ndf, sigma, gamma, n);
+
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		model.kd[c] = kd * (1 - 0.2 * c);
+		model.ks[c] = ks * (1 - 0.1 * c);
+	}
+	return model;
+}
+
+/* Changes every valid entry to what `change` makes of it. */
+static void change_all(struct samples *samples, double (*change)(double value, double random))
+{
+	unsigned seed = 7;
+
+	for (size_t at = 0; at < samples_count(samples); at++)
+		for (int c = 0; c < SAMPLES_CHANNELS; c++)
+			samples->value[c][at] = (float)change((double)samples->value[c][at], random_unit(&seed));
+}
+
+static double noisy(double value, double random)
+{
+	return value * (1 + 0.52 * (2 * random - 1)); /* a standard deviation of 30 % */
+}
+
+static double spiky(double value, double random)
+{
+	return random < 1e-4 ? value * pow(10, 3 + 3e4 * random) : value;
+}
+
+static double one(double value, double random)
+{
+	(void)random;
+	return isnan(value) ? value : 1 / M_PI;
+}
+
+static double nothing(double value, double random)
+{
+	(void)random;
+	return isnan(value) ? value : 0;
+}
+
+static double next_float(double value, double random)
+{
+	return (double)(random < 0.5 ? nextafterf((float)value, INFINITY) : (float)value);
+}
+
+static void drop(struct samples *samples, size_t at)
+{
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		samples->value[c][at] = NAN;
+}
+
+static struct samples mirror(void)
+{
+	const struct cook_torrance m = model_of("std", 1e-4, 2.2, 1.5, 0.2, 0.8);
+
+	return table_of(&m);
+}
+
+static struct samples gaussian_mirror(void)
+{
+	const struct cook_torrance m = model_of("beckmann", 1e-4, INFINITY, 20, 0, 0.8);
+
+	return table_of(&m);
+}
+
+static struct samples long_tail(void)
+{
+	const struct cook_torrance m = model_of("std", 0.03, 1.51, 1.5, 0.2, 0.8);
+
+	return table_of(&m);
+}
+
+static struct samples faint_index(void)
+{
+	const struct cook_torrance m = model_of("ggx", 0.1, 2, 1.01, 0.05, 0.9);
+
+	return table_of(&m);
+}
+
+static struct samples high_index(void)
+{
+	const struct cook_torrance m = model_of("ggx", 0.2, 2, 70, 0, 0.7);
+
+	return table_of(&m);
+}
+
+static struct samples rough(void)
+{
+	const struct cook_torrance m = model_of("std", 3.5, 12, 2, 0.1, 1);
+
+	return table_of(&m);
+}
+
+static struct samples almost_lambertian(void)
+{
+	const struct cook_torrance m = model_of("ggx", 0.3, 2, 1.5, 0.6, 1e-3);
+
+	return table_of(&m);
+}
+
+static struct samples faint_lobe(void)
+{
+	const struct cook_torrance m = model_of("ggx", 0.3, 2, 1.5, 0.6, 1e-6);
+
+	return table_of(&m);
+}
+
+static struct samples wide_range(void)
+{
+	const struct cook_torrance m = model_of("beckmann", 1e-3, INFINITY, 1.5, 1e-5, 1);
+
+	return table_of(&m);
+}
+
+static struct samples one_entry(void)
+{
+	const struct cook_torrance m = model_of("ggx", 0.3, 2, 1.5, 0.5, 0.5);
+	struct samples s = table_of(&m);
+
+	change_all(&s, nothing);
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		s.value[c][12 + 180 * (20 + 90 * 30)] = 5;
+	return s;
+}
+
+static struct samples constant(void)
+{
+	const struct cook_torrance m = model_of("ggx", 0.3, 2, 1.5, 0.5, 0.5);
+	struct samples s = table_of(&m);
+
+	change_all(&s, one);
+	return s;
+}
+
+static struct samples black_channel(void)
+{
+	struct cook_torrance m = model_of("ggx", 0.2, 2, 1.5, 0.4, 0.7);
+
+	m.kd[1] = m.ks[1] = 0;
+	return table_of(&m);
+}
+
+static struct samples two_lobes(void)
+{
+	const struct cook_torrance wide = model_of("beckmann", 0.7, INFINITY, 1.5, 0.1, 0.8),
+				   narrow = model_of("ggx", 3e-3, 2, 1.5, 0, 0.3);
+	struct samples a = table_of(&wide), b = table_of(&narrow);
+
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		for (size_t at = 0; at < samples_count(&a); at++)
+			a.value[c][at] += b.value[c][at];
+	samples_free(&b);
+	return a;
+}
+
+static struct samples plain(void)
+{
+	const struct cook_torrance m = model_of("std", 0.15, 1.9, 1.6, 0.2, 0.6);
+
+	return table_of(&m);
+}
+
+static struct samples noise(void)
+{
+	struct samples s = plain();
+
+	change_all(&s, noisy);
+	return s;
+}
+
+static struct samples spikes(void)
+{
+	struct samples s = plain();
+
+	change_all(&s, spiky);
+	return s;
+}
+
+static struct samples holes(void)
+{
+	struct samples s = plain();
+	unsigned seed = 3;
+
+	for (size_t at = 0; at < samples_count(&s); at++)
+		if (random_unit(&seed) < 0.2)
+			drop(&s, at);
+	return s;
+}
+
+static struct samples blocks_missing(void)
+{
+	struct samples s = plain();
+
+	for (size_t at = 0; at < samples_count(&s); at++)
+		if (at / 180 % 90 / 10 % 3 == 1 && at / 180 / 90 / 10 % 2 == 1)
+			drop(&s, at);
+	return s;
+}
+
+/* All but Lambertian, under noise that is larger than its lobe. */
+static struct samples noisy_lambertian(void)
+{
+	const struct cook_torrance m = model_of("ggx", 0.3, 2, 1.5, 0.6, 1e-5);
+	struct samples s = table_of(&m);
+
+	change_all(&s, noisy);
+	return s;
+}
+
+enum {
+	SHAPE = BOUND_SIGMA | BOUND_GAMMA | BOUND_IOR,
+	KD = BOUND_KD_R | BOUND_KD_G | BOUND_KD_B,
+	KS = BOUND_KS_R | BOUND_KS_G | BOUND_KS_B,
+};
+
+static const struct stiff {
+	const char *what;
+	struct samples (*make)(void);
+	double most; /* E of STD at most; where the table is STD's own, what rounding and the search's end leave */
+	unsigned open, may_be_open; /* what has to be, and what may be, undetermined */
+	bool only_thorough;
+} cases[] = {
+	/* Beside a peak of 1e7, no kd matters. */
+	{"mirror", mirror, 1e-5, KD, 0, false},
+	{"mirror without tail", gaussian_mirror, 1e-5, KD, 0, true},
+	{"gamma 1.51", long_tail, 2e-5, 0, 0, false},
+	{"n 1.01", faint_index, 1e-5, 0, 0, true},
+	{"n 70", high_index, 1e-5, 0, 0, true},
+	{"sigma 3.5", rough, 1e-5, 0, 0, true},
+	{"almost Lambertian", almost_lambertian, 1e-6, 0, 0, true},
+	{"noisy Lambertian", noisy_lambertian, 0.3, SHAPE | KS, 0, false},
+	{"a lobe of weight 1e-6", faint_lobe, 1e-6, 0, 0, true},
+	{"dynamic range of 1e9", wide_range, 1e-5, 0, KD, true},
+	{"one entry", one_entry, 1, SHAPE | KS, 0, false},
+	{"constant", constant, 1e-6, SHAPE | KS, 0, true},
+	{"black channel", black_channel, 1e-5, 0, 0, true},
+	{"two lobes", two_lobes, 0.9, 0, 0, true},
+	{"noise", noise, 0.3, 0, 0, true},
+	{"spikes", spikes, 0.9, 0, 0, false},
+	{"holes", holes, 1e-5, 0, 0, true},
+	{"blocks missing", blocks_missing, 1e-5, 0, 0, true},
+};
+
+static struct fit_options options_of(const char *ndf)
+{
+	struct fit_options o = fit_options_default();
+
+	o.ndf[0] = ndf_find(ndf);
+	o.n_ndf = 1;
+	o.threads = 2;
+	return o;
+}
+
+/* kd and ks are certified to 1e-7 of the optimum for their shape. */
+static const double rounding = 2e-7;
+
+static double error_with(const struct samples *samples, const struct fit_options *options)
+{
+	struct fit_result r;
+
+	run_fit(samples, options, &r);
+	return r.error;
+}
+
+static void check_simpler(const struct stiff *stiff, const struct samples *samples, double error)
+{
+	struct fit_options simpler = options_of("std"), other = simpler;
+	char label[96];
+
+	simpler.specular = false;
+	snprintf(label, sizeof label, "%s: Lambert alone", stiff->what);
+	check_between(error - error_with(samples, &simpler), -INFINITY, rounding, label);
+	if (!thorough())
+		return;
+	simpler.specular = true;
+	simpler.diffuse = false;
+	snprintf(label, sizeof label, "%s: no diffuse term", stiff->what);
+	check_between(error - error_with(samples, &simpler), -INFINITY, rounding, label);
+	/* One search's end or the other's, where E is rounding. */
+	other.starts = 50;
+	snprintf(label, sizeof label, "%s: 50 random starts", stiff->what);
+	check_between(error - error_with(samples, &other), -INFINITY, 1e-3 * error + 2e-6, label);
+}
+
+static void stiff_tables(void **state)
+{
+	(void)state;
+	for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+		const struct stiff *stiff = &cases[n];
+		const struct fit_options options = options_of("std"), three = fit_options_default();
+		struct fit_result r, all[3];
+		char label[96];
+
+		if (stiff->only_thorough && !thorough())
+			continue;
+		struct samples samples = stiff->make();
+
+		run_fit(&samples, &options, &r);
+		check_between(r.error, 0, stiff->most, stiff->what);
+		check_between(r.lower_bound, 0, r.error + rounding, stiff->what);
+		snprintf(label, sizeof label, "%s: shapes evaluated", stiff->what);
+		check_between((double)r.evaluations, 1, 15000, label);
+		if ((r.undetermined & stiff->open) != stiff->open ||
+		    r.undetermined & ~(stiff->open | stiff->may_be_open))
+			fail_msg("%s: undetermined 0x%x, expected 0x%x", stiff->what, r.undetermined, stiff->open);
+		check_simpler(stiff, &samples, r.error);
+		if (thorough()) {
+			run_fit(&samples, &three, all);
+			assert_true(all[0].error == r.error);
+			assert_true(r.error <= all[1].error && r.error <= all[2].error);
+			printf("%-22s E %-10.4g of GGX %-10.4g of Beckmann %-10.4g sigma %-9.5g gamma %-8.5g n %-8.5g "
+			       "%ld shapes, %.1f s\n",
+			       stiff->what, r.error, all[1].error, all[2].error, r.model.ndf.sigma_x, r.model.ndf.gamma,
+			       r.model.n, r.evaluations, r.seconds);
+			fflush(stdout);
+		}
+		samples_free(&samples);
+	}
+}
+
+/* Half of the values move to the next float. */
+static void a_rounding_of_the_data(void **state)
+{
+	const struct fit_options options = options_of("ggx");
+	struct samples samples = noise();
+
+	(void)state;
+	const double before = error_with(&samples, &options);
+
+	change_all(&samples, next_float);
+	check_rel(error_with(&samples, &options), before, 1e-6, "E after a rounding");
+	samples_free(&samples);
+}
+
+static void only_what_is_free_is_named(void **state)
+{
+	struct fit_options options = options_of("ggx");
+	struct samples samples = noisy_lambertian();
+	struct fit_result r;
+
+	(void)state;
+	options.ior = 1.5;
+	run_fit(&samples, &options, &r);
+	assert_int_equal(r.undetermined & SHAPE, BOUND_SIGMA);
+	options.gray = true;
+	options.sigma = 0.3;
+	run_fit(&samples, &options, &r);
+	assert_int_equal(r.undetermined & (SHAPE | KD), 0);
+	/* One ks, three names; where F is what it is, ks = 1 is a lobe that the data do not have. */
+	assert_int_equal(r.undetermined & KS, 0);
+	options.sigma = options.ior = NAN;
+	run_fit(&samples, &options, &r);
+	assert_int_equal(r.undetermined, BOUND_SIGMA | BOUND_IOR | KS);
+	options.specular = false;
+	run_fit(&samples, &options, &r);
+	assert_int_equal(r.undetermined, 0);
+	samples_free(&samples);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(stiff_tables),
+		cmocka_unit_test(a_rounding_of_the_data),
+		cmocka_unit_test(only_what_is_free_is_named),
+	};
+
+	return cmocka_run_group_tests_name("stiff", tests, NULL, NULL);
+}
