@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Targets: all (default), check, demo, bench, figures, stability, asan, ubsan, tsan, lint, valgrind, compilers, fuzz,
 # killtest, clean. All but `all` and `clean` install what is missing first.
-VERSION := 0.1.0
+VERSION := 0.2.0
 
 CC ?= cc
 BUILD ?= build

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program itself: exit codes, both streams, bad input, batches, kill and resume. Runs $STDFIT or build/stdfit. */
+#include "energy.h"
 #include "run_program.h"
 
 #include <fcntl.h>
@@ -128,6 +129,8 @@ static void wrong_usage(void **state)
 		{"a.binary --threads 2.5", "for --threads"},
 		{"a.binary --threads 99999999999999999999", "for --threads"},
 		{"a.binary --seed -1", "for --seed"},
+		{"a.binary --seed 3", "--seed means nothing without --starts"},
+		{"compare a.binary --seed 3", "--seed means nothing without --starts"},
 		{"a.binary --seed 18446744073709551616", "for --seed"},
 		{"a.binary --ior 1", "for --ior"},
 		{"a.binary --ior 1e400", "for --ior"},
@@ -472,6 +475,65 @@ static void resume_redoes_what_differs(void **state)
 	free(diary);
 }
 
+/* A table without the latest columns gives models, but takes no rows. */
+static void older_tables(void **state)
+{
+	(void)state;
+	stdfit("a.binary " CHEAP " -o newer.csv");
+	expect_code(0);
+	shell("cut -d, -f1-36 newer.csv >older.csv; cp older.csv older.copy");
+	stdfit("eval a.binary --from older.csv --ndf ggx");
+	expect_code(0);
+	stdfit("compare older.csv");
+	expect_code(0);
+	stdfit("a.binary " CHEAP " --resume -o older.csv");
+	expect_error(1, "cannot resume 'older.csv': expected the columns of stdfit " STDFIT_VERSION);
+	shell("cmp older.csv older.copy && ! test -e older.csv~");
+}
+
+static void the_energy_is_accounted_for(void **state)
+{
+	struct cook_torrance model;
+	struct fit_options fit;
+	struct error error;
+	struct pwl *pwl;
+	double albedo[3], theta_i;
+	(void)state;
+	stdfit("a.binary " CHEAP " -o energy.csv");
+	expect_code(0);
+	struct csv_table table = read_table("energy.csv");
+	for (size_t i = 0; i < table.n_rows; i++) {
+		assert_int_equal(result_model(table.row[i], &model, &fit, &pwl, &error), STATUS_OK);
+		assert_int_equal(energy_albedo_max(&model, albedo, &theta_i), STATUS_OK);
+		for (int c = 0; c < 3; c++)
+			check_rel(result_number(table.row[i], RESULT_ALBEDO_R + (enum result_column)c), albedo[c],
+				  1e-12, "albedo");
+		assert_string_equal(table.row[i][RESULT_ENERGY], "ok");
+		/* Grazing light finds F = 1 and G = 1. */
+		check_between(albedo[0], model.kd[0], 1, "albedo_r");
+	}
+	csv_table_free(&table);
+	/* Lambert's term and a lossless lobe: kd + ks at most, and, since kd is 0.9, more than 1. */
+	stdfit("synth bright.binary --ndf ggx --sigma 0.2 --fresnel none --kd 0.9 --ks 0.8,0.8,0.05");
+	expect_code(0);
+	stdfit("bright.binary --ndf ggx --sigma 0.2 --fresnel none --max-theta 40 --table -o bright.csv");
+	expect_code(0);
+	expect_out("(sends back more light than it gets)");
+	table = read_table("bright.csv");
+	assert_string_equal(table.row[0][RESULT_ENERGY], "gain");
+	check_between(result_number(table.row[0], RESULT_ALBEDO_R), 1.6, 1.701, "bright red");
+	check_between(result_number(table.row[0], RESULT_ALBEDO_B), 0.9, 0.951, "bright blue");
+	csv_table_free(&table);
+	stdfit("eval bright.binary --kd 0.9 --ks 0.8,0.8,0.05 --ndf ggx --sigma 0.2 --fresnel none --table");
+	expect_code(0);
+	expect_out("energy               gain");
+	expect_out("furnace              0.9");
+	stdfit("eval bright.binary --kd 0.25");
+	expect_code(0);
+	expect_out(",0.25,0.25,0.25,");
+	expect_out(",ok\n");
+}
+
 /* Interrupts a batch whose first file fails at once and whose second one takes for ever. */
 static void interrupt(int number)
 {
@@ -655,6 +717,8 @@ int main(void)
 		cmocka_unit_test(threads_change_nothing),
 		cmocka_unit_test(kill_and_resume),
 		cmocka_unit_test(resume_redoes_what_differs),
+		cmocka_unit_test(older_tables),
+		cmocka_unit_test(the_energy_is_accounted_for),
 		cmocka_unit_test(an_interrupt_keeps_what_is_done),
 		cmocka_unit_test(outputs_that_cannot_be_written),
 		cmocka_unit_test(a_reader_that_is_gone),

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit eval - how far given models are from a MERL file. */
+#include "balance.h"
 #include "merl.h"
 #include "model_source.h"
 #include "report.h"
@@ -15,6 +16,11 @@ enum eval_column {
 	EVAL_RMS_CUBE_ROOT,
 	EVAL_LOG,
 	EVAL_SAMPLES,
+	EVAL_ALBEDO_R,
+	EVAL_ALBEDO_G,
+	EVAL_ALBEDO_B,
+	EVAL_FURNACE,
+	EVAL_ENERGY,
 	EVAL_COLUMNS
 };
 
@@ -28,6 +34,11 @@ static const struct csv_column columns[EVAL_COLUMNS] = {
 	[EVAL_RMS_CUBE_ROOT] = {"rms_cube_root", true},
 	[EVAL_LOG] = {"log_error", true},
 	[EVAL_SAMPLES] = {"samples", true},
+	[EVAL_ALBEDO_R] = {"albedo_r", true},
+	[EVAL_ALBEDO_G] = {"albedo_g", true},
+	[EVAL_ALBEDO_B] = {"albedo_b", true},
+	[EVAL_FURNACE] = {"furnace", true},
+	[EVAL_ENERGY] = {"energy", false},
 };
 
 struct evaluation {
@@ -46,6 +57,7 @@ static enum status evaluate(struct evaluation *e, const struct source_model *sou
 		text_quote(e->path, name, sizeof name);
 		return error_set(error, status, "cannot compare with '%s': %.200s", name, why.text);
 	}
+	const struct balance balance = balance_of(&source->model);
 	const double number[EVAL_COLUMNS] = {
 		[EVAL_NONE] = m.error[WEIGHT_NONE],
 		[EVAL_COSINE] = m.error[WEIGHT_COSINE],
@@ -54,11 +66,16 @@ static enum status evaluate(struct evaluation *e, const struct source_model *sou
 		[EVAL_RMS_CUBE_ROOT] = m.rms_cube_root,
 		[EVAL_LOG] = m.log_error,
 		[EVAL_SAMPLES] = (double)m.samples,
+		[EVAL_ALBEDO_R] = balance.albedo[0],
+		[EVAL_ALBEDO_G] = balance.albedo[1],
+		[EVAL_ALBEDO_B] = balance.albedo[2],
+		[EVAL_FURNACE] = balance_furnace(&source->model),
 	};
 	char text[EVAL_COLUMNS][CSV_NUMBER_SIZE];
 	const char *cell[EVAL_COLUMNS] = {e->path, ndf_name(source->model.ndf.class)};
-	for (int c = EVAL_NONE; c < EVAL_COLUMNS; c++)
+	for (int c = EVAL_NONE; c < EVAL_ENERGY; c++)
 		cell[c] = csv_number(text[c], number[c]);
+	cell[EVAL_ENERGY] = balance_name(&balance);
 	if (csv_table_add(&e->output, cell))
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	return STATUS_OK;

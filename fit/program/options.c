@@ -327,6 +327,8 @@ int options_check_fit(const struct options *options)
 		return options_usage(options->command, "--time means nothing without another --algorithm than default");
 	if (fit->algorithm && options_given(options, "starts"))
 		return options_usage(options->command, "--starts means nothing with another --algorithm than default");
+	if (options->command != COMMAND_BENCH && options_given(options, "seed") && !fit->starts && !fit->algorithm)
+		return options_usage(options->command, "--seed means nothing without --starts");
 	if (options->trace && !isnan(options->within))
 		return options_usage(options->command, "--trace and --within exclude each other");
 	if (options->resume && !options->output)

@@ -205,6 +205,8 @@ static void print_fit(FILE *file, char *const *row)
 	fprintf(file, "  %-20s", rgb_text(text, row, RESULT_KS_R));
 	fprintf(file, "%s%s", *row[RESULT_AT_BOUND] ? "  " : "", row[RESULT_AT_BOUND]);
 	print_remark(file, row[RESULT_STATUS]);
+	if (!strcmp(row[RESULT_ENERGY], "gain"))
+		fputs("  (sends back more light than it gets)", file);
 	fputc('\n', file);
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "result.h"
+#include "balance.h"
 #include "free_form.h"
 #include "text_quote.h"
 
@@ -44,6 +45,10 @@ const struct csv_column result_columns[RESULT_COLUMNS] = {
 	[RESULT_INPUT] = {"input", false},
 	[RESULT_OPTIONS] = {"options", false},
 	[RESULT_VERSION] = {"version", false},
+	[RESULT_ALBEDO_R] = {"albedo_r", true},
+	[RESULT_ALBEDO_G] = {"albedo_g", true},
+	[RESULT_ALBEDO_B] = {"albedo_b", true},
+	[RESULT_ENERGY] = {"energy", false},
 };
 
 void result_input(char text[RESULT_INPUT_SIZE], const struct samples *samples)
@@ -182,6 +187,14 @@ static void set_metrics(struct row *row, const struct fit_metrics *metrics)
 	set_number(row, RESULT_LOG_ERROR, metrics->log_error);
 }
 
+static void set_balance(struct row *row, const struct cook_torrance *model)
+{
+	const struct balance balance = balance_of(model);
+	for (int c = 0; c < 3; c++)
+		set_number(row, RESULT_ALBEDO_R + (enum result_column)c, balance.albedo[c]);
+	row->cell[RESULT_ENERGY] = balance_name(&balance);
+}
+
 enum { NAMES_SIZE = 64, STATUS_SIZE = NAMES_SIZE + 16 };
 
 /* The names of enum fit_bound's bits. */
@@ -222,6 +235,7 @@ enum status result_add(struct csv_table *table, const struct result_source *sour
 	set_number(row, RESULT_ERROR, result->error);
 	set_model(row, options, result, params);
 	set_metrics(row, &result->metrics);
+	set_balance(row, &result->model);
 	set_number(row, RESULT_STARTS, result->starts);
 	set_number(row, RESULT_STARTS_AGREEING, result->starts_agreeing);
 	row->cell[RESULT_AT_BOUND] = names_text(bounds, result->at_bound);

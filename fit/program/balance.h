@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* balance - what a model does with the light that falls on it, as cells of tables. */
+#ifndef BALANCE_H
+#define BALANCE_H
+
+#include "cook_torrance.h"
+
+/* More than this is more light than comes in, beyond any doubt: the albedo is good to 1e-5 of kd + ks. */
+#define BALANCE_GAIN (1 + 1e-4)
+
+/* struct balance - the largest directional albedo, NaN where energy.h has none. */
+struct balance {
+	double albedo[3];
+};
+
+struct balance balance_of(const struct cook_torrance *model);
+
+/* balance_name - "gain" if a channel sends back more than it gets, else "ok"; "" where the albedo is not known. */
+const char *balance_name(const struct balance *balance);
+
+/* balance_furnace - the white-furnace balance of a model's distribution and G (the STD paper's eq. 24, over pi): the share
+ * that comes back, of light that comes from everywhere, after one reflection on lossless facets; in [0, 1] to 1e-6.
+ * NaN where energy.h has none. 30 to 300 ms. */
+double balance_furnace(const struct cook_torrance *model);
+
+#endif
