@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fits of hard tables, made in memory: each ends after a bounded number of looks, below every simpler model, and says what
- * it cannot know. Every twelfth phi_d stands for all of them, and some cases are left out, unless the environment has
- * STDFIT_STABILITY=1: then the tables are whole, random starts must find nothing better, and it takes minutes. */
+ * it cannot know. Every twelfth phi_d stands for all of them. Some cases are left out unless the environment has
+ * STDFIT_STABILITY=1: then random starts must find nothing better, either, and it takes minutes. */
 #include "check.h"
 #include "fit.h"
 #include "make_table.h"
@@ -16,7 +16,7 @@ static bool thorough(void)
 
 static struct samples table_of(const struct cook_torrance *model)
 {
-	return make_sparse_table(model, 180, BINS_NODE, 0, thorough() ? 1 : 12);
+	return make_sparse_table(model, 180, BINS_NODE, 0, 12);
 }
 
 static struct cook_torrance model_of(const char *ndf, double sigma, double gamma, double n, double kd, double ks)
