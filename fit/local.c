@@ -9,7 +9,7 @@ struct local {
 	double tolerance;
 	local_note *note;
 	void *user;
-	struct place best;
+	struct space_point best;
 	double first; /* error of the place it began at */
 	nlopt_opt opt;
 };
@@ -38,7 +38,7 @@ static double evaluate(unsigned dims, const double *x, double *gradient, void *d
 }
 
 enum status local_descend(const struct space *space, struct objective *o, const struct local_how *how, local_note *note,
-			  void *user, struct place *place, bool *limited)
+			  void *user, struct space_point *place, bool *limited)
 {
 	static const double spacing[] = {
 		[COORDINATE_SIGMA] = 0.35, [COORDINATE_GAMMA] = 1.0, [COORDINATE_IOR] = 0.1, [COORDINATE_K] = 0.15};

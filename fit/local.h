@@ -22,7 +22,7 @@ typedef void local_note(void *user, const struct shape *shape, const struct line
  * Returns: the best place seen; *limited (if not NULL): stopped by how->evaluations while the error still fell
  * Errors:  STATUS_NO_MEMORY. When the options' cancel is set it ends at once. */
 MUST_CHECK enum status local_descend(const struct space *space, struct objective *objective,
-				     const struct local_how *how, local_note *note, void *user, struct place *place,
-				     bool *limited);
+				     const struct local_how *how, local_note *note, void *user,
+				     struct space_point *place, bool *limited);
 
 #endif

@@ -35,7 +35,7 @@ struct search {
 	const struct ndf_class *class;
 	struct space space;
 	_Atomic long evaluations;
-	struct place known; /* found before and in need of beating; its error is INFINITY when there is none */
+	struct space_point known; /* found before and in need of beating; its error is INFINITY when there is none */
 	double begin_s;
 	const char *stage;
 	double stage_best; /* least error of this stage */
@@ -89,7 +89,7 @@ static long grid_size(const struct search *s, int from)
 	return size;
 }
 
-static void grid_place(const struct search *s, long index, struct place *place)
+static void grid_place(const struct search *s, long index, struct space_point *place)
 {
 	for (int d = s->space.dims - 1; d >= 0; d--) {
 		const struct axis *a = &s->space.axis[d];
@@ -101,7 +101,7 @@ static void grid_place(const struct search *s, long index, struct place *place)
 
 /* Evaluates the grid on the coarsest table. Neighbours along the last axes share G1 and begin the inner solve where
  * the one before ended; a stretch of the grid begins afresh, so the result does not depend on the threads. */
-static enum status scan(struct search *s, struct place *grid)
+static enum status scan(struct search *s, struct space_point *grid)
 {
 	const long total = grid_size(s, 0);
 	const int first_ior = s->space.dims > 0 && s->space.coordinate[0] == COORDINATE_SIGMA
@@ -141,7 +141,7 @@ static enum status scan(struct search *s, struct place *grid)
 }
 
 /* Whether no neighbour in the grid is better; of a plateau only the first place counts. */
-static bool is_valley(const struct search *s, const struct place *grid, long index)
+static bool is_valley(const struct search *s, const struct space_point *grid, long index)
 {
 	long step = 1;
 
@@ -159,7 +159,7 @@ static bool is_valley(const struct search *s, const struct place *grid, long ind
 
 static int by_error(const void *a, const void *b)
 {
-	const struct place *p = a, *q = b;
+	const struct space_point *p = a, *q = b;
 
 	if (p->error != q->error)
 		return p->error < q->error ? -1 : 1;
@@ -169,11 +169,11 @@ static int by_error(const void *a, const void *b)
 enum { MOST_STARTS = 24 };
 
 /* The valleys of the grid, best first. Returns how many, at most MOST_STARTS. */
-static int pick_starts(const struct search *s, struct place *grid, struct place starts[])
+static int pick_starts(const struct search *s, struct space_point *grid, struct space_point starts[])
 {
 	const long total = grid_size(s, 0);
 	long n_valleys = 0;
-	struct place *valley = malloc((size_t)total * sizeof *valley);
+	struct space_point *valley = malloc((size_t)total * sizeof *valley);
 
 	if (!valley)
 		return -1;
@@ -204,7 +204,7 @@ static const struct stage stages[SEARCH_LEVELS] = {
 	{"full", 2, 1e-4, {NLOPT_LN_BOBYQA, 0.01, 1e-6, 16, 0}},
 };
 
-static bool near(const struct search *s, const struct place *a, const struct place *b)
+static bool near(const struct search *s, const struct space_point *a, const struct space_point *b)
 {
 	for (int d = 0; d < s->space.dims; d++)
 		if (fabs(a->x[d] - b->x[d]) >= 0.02 * (s->space.hi[d] - s->space.lo[d]))
@@ -214,7 +214,7 @@ static bool near(const struct search *s, const struct place *a, const struct pla
 
 /* Places too near a better one to lead anywhere else go; so do those too far behind the best. What has been found before
  * counts as one of them. Returns how many stay. */
-static int thin_out(const struct search *s, struct place *place, int count, const struct stage *stage)
+static int thin_out(const struct search *s, struct space_point *place, int count, const struct stage *stage)
 {
 	int kept = 0;
 
@@ -234,7 +234,8 @@ static int thin_out(const struct search *s, struct place *place, int count, cons
 
 /* Refines the places on one level's table one after the other; the calling thread leads, the others of its team help
  * with the passes. */
-static enum status refine_in_turn(struct search *s, int level, struct place *place, int count, struct found *found)
+static enum status refine_in_turn(struct search *s, int level, struct space_point *place, int count,
+				  struct found *found)
 {
 	struct objective o;
 	enum status status =
@@ -251,7 +252,7 @@ static enum status refine_in_turn(struct search *s, int level, struct place *pla
 }
 
 /* The same, one place a thread. */
-static enum status refine_at_once(struct search *s, int level, struct place *place, int count)
+static enum status refine_at_once(struct search *s, int level, struct space_point *place, int count)
 {
 	enum status status = STATUS_OK;
 
@@ -277,7 +278,7 @@ static enum status refine_at_once(struct search *s, int level, struct place *pla
 }
 
 /* Refines the places on a thinned table, whichever way keeps the threads busy. */
-static enum status refine_all(struct search *s, int level, struct place *place, int count, struct found *found)
+static enum status refine_all(struct search *s, int level, struct space_point *place, int count, struct found *found)
 {
 	enum status status = STATUS_OK;
 
@@ -290,7 +291,7 @@ static enum status refine_all(struct search *s, int level, struct place *place, 
 }
 
 /* Ends on the full table: refines the places, then solves for kd and ks of the best one to a certified optimum. */
-static enum status finish_in_turn(struct search *s, struct place *place, int count, struct found *found)
+static enum status finish_in_turn(struct search *s, struct space_point *place, int count, struct found *found)
 {
 	const int full = SEARCH_LEVELS - 1;
 	struct objective o;
@@ -314,7 +315,7 @@ static enum status finish_in_turn(struct search *s, struct place *place, int cou
 	return STATUS_OK;
 }
 
-static enum status finish(struct search *s, struct place *place, int count, struct found *found)
+static enum status finish(struct search *s, struct space_point *place, int count, struct found *found)
 {
 	enum status status = STATUS_OK;
 
@@ -336,7 +337,7 @@ static double next_uniform(uint64_t *state)
 
 /* Random places, uniform in the coordinates. They start on the second table, which the scan has not seen: a valley that
  * the coarsest one hides can still be found. */
-static void random_places(const struct search *s, struct place place[], int count)
+static void random_places(const struct search *s, struct space_point place[], int count)
 {
 	uint64_t state = s->options->seed;
 
@@ -346,7 +347,7 @@ static void random_places(const struct search *s, struct place place[], int coun
 }
 
 /* How many of place[from .. count - 1] are within 0.1 % of the best of all, the known one included. */
-static int agreeing(const struct search *s, const struct place place[], int from, int count)
+static int agreeing(const struct search *s, const struct space_point place[], int from, int count)
 {
 	double best = s->known.error;
 	int agree = 0;
@@ -359,7 +360,7 @@ static int agreeing(const struct search *s, const struct place place[], int from
 }
 
 /* The best place of each slice of the grid. */
-static void note_slices(const struct search *s, const struct place *grid, struct evidence *evidence)
+static void note_slices(const struct search *s, const struct space_point *grid, struct evidence *evidence)
 {
 	const long total = grid_size(s, 0);
 
@@ -370,7 +371,7 @@ static void note_slices(const struct search *s, const struct place *grid, struct
 		for (int i = 0; i < count; i++)
 			evidence->slice[d][i].error = INFINITY;
 		for (long n = 0; n < total; n++) {
-			struct place *best = &evidence->slice[d][n / step % count];
+			struct space_point *best = &evidence->slice[d][n / step % count];
 
 			if (grid[n].error < best->error)
 				*best = grid[n];
@@ -379,9 +380,9 @@ static void note_slices(const struct search *s, const struct place *grid, struct
 }
 
 /* The places to start from: the valleys of a scan. Returns how many, 0 on failure. */
-static int first_places(struct search *s, struct place place[], struct evidence *evidence, enum status *status)
+static int first_places(struct search *s, struct space_point place[], struct evidence *evidence, enum status *status)
 {
-	struct place *grid = calloc((size_t)grid_size(s, 0), sizeof *grid);
+	struct space_point *grid = calloc((size_t)grid_size(s, 0), sizeof *grid);
 	int count = 0;
 
 	begin_stage(s, "scan");
@@ -397,7 +398,7 @@ static int first_places(struct search *s, struct place place[], struct evidence 
 }
 
 /* Runs the stages on the thinned tables. Returns how many places are left for the full one, best first. */
-static int descend(struct search *s, struct place place[], int count, struct found *found, enum status *status)
+static int descend(struct search *s, struct space_point place[], int count, struct found *found, enum status *status)
 {
 	const int n_random = s->options->starts;
 
@@ -436,7 +437,7 @@ enum status search_run(const struct levels *levels, const struct fit_options *op
 		       struct found *found)
 {
 	struct search s = new_search(levels, options, class);
-	struct place *place = calloc(MOST_STARTS + (size_t)options->starts + 1, sizeof *place);
+	struct space_point *place = calloc(MOST_STARTS + (size_t)options->starts + 1, sizeof *place);
 	enum status status = place ? STATUS_OK : STATUS_NO_MEMORY;
 	int count = 1;
 
@@ -457,7 +458,7 @@ enum status search_estimate(const struct levels *levels, const struct fit_option
 			    const struct ndf_class *class, double *error)
 {
 	struct search s = new_search(levels, options, class);
-	struct place place[MOST_STARTS + 1] = {{.error = 0}};
+	struct space_point place[MOST_STARTS + 1] = {{.error = 0}};
 	struct found found = {.starts = 0};
 	enum status status = STATUS_OK;
 	int count = s.space.dims > 0 ? first_places(&s, place, &found.evidence, &status) : 1;
@@ -479,7 +480,7 @@ enum status search_from(const struct levels *levels, const struct fit_options *o
 {
 	struct fit_options own = *options;
 	struct search s;
-	struct place place[SEARCH_GIVEN];
+	struct space_point place[SEARCH_GIVEN];
 	enum status status = STATUS_OK;
 
 	own.starts = 0;

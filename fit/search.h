@@ -19,7 +19,7 @@ void levels_free(struct levels *levels);
 /* struct evidence - what the scan of the coarsest table has shown of the shapes that were not chosen: the best for each
  * value of each axis of the space. */
 struct evidence {
-	struct place slice[SPACE_DIMS][SPACE_VALUES];
+	struct space_point slice[SPACE_DIMS][SPACE_VALUES];
 };
 
 /* struct found - where a search ended. */

@@ -31,8 +31,8 @@ struct space {
 	struct shape fixed; /* values of the parameters that are not searched */
 };
 
-/* struct place - a point of a space, and E there on the table at hand. */
-struct place {
+/* struct space_point - a point of a space, and E there on the table at hand. */
+struct space_point {
 	double x[SPACE_DIMS];
 	double error;
 };

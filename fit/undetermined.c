@@ -84,10 +84,10 @@ static double error_at(struct inquiry *q, struct objective *o, const struct spac
 
 /* Adds the place of a shape, if it is among the `most` best so far. */
 static void offer(struct inquiry *q, struct objective *o, const struct space *space, struct shape shape,
-		  struct place *start, int *n, int most)
+		  struct space_point *start, int *n, int most)
 {
 	struct linear linear;
-	struct place place;
+	struct space_point place;
 
 	space_place(space, &shape, place.x);
 	place.error = error_at(q, o, space, place.x, 2e-3, &linear);
@@ -116,7 +116,7 @@ enum { STARTS = 2 };
 /* Where a refit under a pin begins: at the optimum, and at the best that the scan has seen there. Under a pin of kd or
  * ks, at the best of each sigma; and, since ks may be large where F is small, at the least index. */
 static int first_places(struct inquiry *q, struct objective *o, const struct space *space, const struct pin *pin,
-			struct place start[STARTS])
+			struct space_point start[STARTS])
 {
 	const struct evidence *e = q->evidence;
 	int n = 0;
@@ -141,7 +141,7 @@ static int first_places(struct inquiry *q, struct objective *o, const struct spa
 
 /* Improves a place on a level's table, on which the optimum has the error `best`, unless there is nothing to search. */
 static enum status descend(struct inquiry *q, struct objective *o, const struct space *space, int level, double best,
-			   struct place *place)
+			   struct space_point *place)
 {
 	struct local_how how = hows[level];
 	struct linear linear;
@@ -155,9 +155,9 @@ static enum status descend(struct inquiry *q, struct objective *o, const struct 
 
 /* The best start on the coarsest table, improved. */
 static enum status descend_coarse(struct inquiry *q, const struct pin *pin, const struct space *space,
-				  struct place *best)
+				  struct space_point *best)
 {
-	struct place start[STARTS];
+	struct space_point start[STARTS];
 	struct objective o;
 	enum status status = open_level(q, 0, &o);
 
@@ -178,7 +178,7 @@ static enum status descend_coarse(struct inquiry *q, const struct pin *pin, cons
 
 /* Goes on under a pin on the table of a finer level; on the full one only to look. */
 static enum status descend_finer(struct inquiry *q, const struct pin *pin, const struct space *space, int level,
-				 struct place *place, bool *reached)
+				 struct space_point *place, bool *reached)
 {
 	const bool full = level == SEARCH_LEVELS - 1;
 	struct objective o;
@@ -203,7 +203,7 @@ static enum status descend_finer(struct inquiry *q, const struct pin *pin, const
 static enum status reaches(struct inquiry *q, const struct pin *pin, bool *reached)
 {
 	const struct space space = pinned_space(q, pin);
-	struct place place;
+	struct space_point place;
 	enum status status = descend_coarse(q, pin, &space, &place);
 
 	*reached = place.error <= limit_of(0, q->coarse);
@@ -232,7 +232,7 @@ static enum status reaches_all(struct inquiry *q, struct pin pin, const double v
 static int values_of(const struct inquiry *q, int d, double value[])
 {
 	const struct axis *axis = &q->space.axis[d];
-	const struct place *slice = q->evidence->slice[d];
+	const struct space_point *slice = q->evidence->slice[d];
 	int worst = 0, n = 0;
 
 	for (int i = 1; i < axis->count; i++)
@@ -339,7 +339,7 @@ static void note_rise(struct inquiry *q, struct objective *o, const struct shape
 static enum status look_at_coarse(struct inquiry *q)
 {
 	const int n = q->space.dims > 0 ? q->space.axis[0].count : 0;
-	const struct place *slice = q->evidence->slice[0];
+	const struct space_point *slice = q->evidence->slice[0];
 	struct objective o;
 	struct linear linear;
 	enum status status = open_level(q, 0, &o);

@@ -148,7 +148,8 @@ static void options_leave_out_what_they_say(void **state)
 	run_fit(&samples, &o, &lambert);
 	check_abs(lambert.model.ks[0] + lambert.model.ks[1] + lambert.model.ks[2], 0, 0, "no specular");
 	assert_true(lambert.error > r.error || lambert.error > gray.error);
-	assert_int_equal(lambert.evaluations, 1);
+	/* Nothing is searched; what is left is whether kd is determined. */
+	assert_in_range(lambert.evaluations, 1, 5);
 	samples_free(&samples);
 }
 
