@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Targets: all (default), check, demo, bench, figures, stability, asan, ubsan, tsan, lint, valgrind, compilers, fuzz,
-# killtest, clean. All but `all` and `clean` install what is missing first.
+# killtest, install, uninstall, dist, clean. Those that check or show something install what is missing first.
 VERSION := 0.2.0
 
 CC ?= cc
@@ -24,7 +24,9 @@ quiet = $(if $(V),,@echo '  $(1)	$@';)
 warnings := -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes $(WERROR)
 # errno and floating-point traps are not used by the mathematics; without them loops vectorise.
 fpflags := -fno-math-errno -fno-trapping-math -ffp-contract=off
-ALL_CFLAGS = -std=c11 -D_GNU_SOURCE $(warnings) $(OPT) -fopenmp $(fpflags) $(addprefix -I,$(folders)) \
+# One set of objects for the program and the shared library.
+picflags := -fPIC -fno-semantic-interposition
+ALL_CFLAGS = -std=c11 -D_GNU_SOURCE $(warnings) $(OPT) -fopenmp $(fpflags) $(picflags) $(addprefix -I,$(folders)) \
 	$(pkg_cflags) -DSTDFIT_VERSION='"$(VERSION)"' $(CFLAGS_$(basename $(@F))) $(CFLAGS)
 LIBS = $(pkg_libs) -lm
 
@@ -91,8 +93,8 @@ setup:
 check: setup
 	@$(MAKE) --no-print-directory run-tests
 
-run-tests: $(BUILD)/stdfit $(test_programs)
-	@scripts/run_tests.sh $(BUILD) $(test_programs)
+run-tests: all library $(test_programs)
+	@CC='$(CC)' OPT='$(OPT)' scripts/run_tests.sh $(BUILD) $(test_programs)
 
 # The whole suite under sanitizers, each in a build of its own. ThreadSanitizer needs clang, whose OpenMP tells it, through
 # Archer, what waits for what; of libraries that were not built for it, it knows nothing and should say nothing.
@@ -171,6 +173,7 @@ demo: setup
 clean:
 	rm -rf $(BUILD)
 
+include scripts/install.mk
 
 .PHONY: all setup check run-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo clean
 

@@ -5,8 +5,13 @@
 
 #include "cook_torrance.h"
 #include "samples.h"
-#include <stdatomic.h>
 #include <stdbool.h>
+#ifdef __cplusplus
+#include <atomic>
+using std::atomic_bool;
+#else
+#include <stdatomic.h>
+#endif
 
 /* How an entry counts in the error E = sum w |m - f| / sum w m. */
 enum weight {

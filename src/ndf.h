@@ -50,7 +50,11 @@ struct ndf_param {
 
 /* struct ndf - one distribution with its parameters; filled by ndf_init() or ndf_init_params(), then only read. */
 struct ndf {
+#ifdef __cplusplus
+	const struct ndf_class *class_; /* a keyword there */
+#else
 	const struct ndf_class *class;
+#endif
 	double sigma_x, sigma_y;      /* roughness along x and y, > 0; equal when isotropic */
 	double gamma;                 /* shape; 2 for ggx, INFINITY for beckmann, C for low */
 	double param[NDF_PARAMS_MAX]; /* as ndf_param_at() names them; the first is sigma_x where the class has sigma */
@@ -70,15 +74,15 @@ struct ndf {
 const struct ndf_class *ndf_find(const char *name);
 /* ndf_at - the classes in the order of the table, index 0, 1, ...; NULL past the last. */
 const struct ndf_class *ndf_at(int index);
-const char *ndf_name(const struct ndf_class *class);
+const char *ndf_name(const struct ndf_class *ndf_class);
 /* ndf_has_gamma - whether the class has a shape beside its roughness: the argument gamma of ndf_init() matters. */
-bool ndf_has_gamma(const struct ndf_class *class);
+bool ndf_has_gamma(const struct ndf_class *ndf_class);
 /* ndf_is_tabulated - whether the class has no parameters but a table: ndf_init() refuses it. */
-bool ndf_is_tabulated(const struct ndf_class *class);
+bool ndf_is_tabulated(const struct ndf_class *ndf_class);
 /* ndf_has_anisotropy - whether sigma_x and sigma_y may differ. */
-bool ndf_has_anisotropy(const struct ndf_class *class);
+bool ndf_has_anisotropy(const struct ndf_class *ndf_class);
 /* ndf_param_at - the named parameters of a class, index 0, 1, ...; NULL past the last. */
-const struct ndf_param *ndf_param_at(const struct ndf_class *class, int index);
+const struct ndf_param *ndf_param_at(const struct ndf_class *ndf_class, int index);
 
 /* ndf_init - prepares a distribution from a roughness and a shape: coordinates in which all classes can be searched
  * alike. low takes C = gamma and B = 2/(gamma sigma^2), which makes sigma the width of its peak; t-family takes x = 2.
@@ -87,13 +91,13 @@ const struct ndf_param *ndf_param_at(const struct ndf_class *class, int index);
  *          open end excluded, (0, 1000] for gtr and low; for gtr sigma^(2 gamma) below 1e260
  * Returns: STATUS_OK, or STATUS_DOMAIN with *ndf untouched: an argument outside its range, NaN, sigma_x != sigma_y
  *          for a class without anisotropy, or a NULL class. */
-MUST_CHECK enum status ndf_init(struct ndf *ndf, const struct ndf_class *class, double sigma_x, double sigma_y,
+MUST_CHECK enum status ndf_init(struct ndf *ndf, const struct ndf_class *ndf_class, double sigma_x, double sigma_y,
 				double gamma);
 
-/* ndf_init_params - prepares an isotropic distribution from its own parameters: value[i] for ndf_param_at(class, i).
+/* ndf_init_params - prepares an isotropic distribution from its own parameters: value[i] for ndf_param_at(ndf_class, i).
  * A struct ndf's param[] given back makes the same distribution, to the bit.
  * Returns: as ndf_init(). */
-MUST_CHECK enum status ndf_init_params(struct ndf *ndf, const struct ndf_class *class, const double value[]);
+MUST_CHECK enum status ndf_init_params(struct ndf *ndf, const struct ndf_class *ndf_class, const double value[]);
 
 /* ndf_from_pwl - the isotropic piecewise-linear distribution *pwl, which has to outlive *ndf. */
 void ndf_from_pwl(struct ndf *ndf, const struct pwl *pwl);

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The library for other programs, install, uninstall and dist; part of the Makefile.
+PREFIX ?= /usr/local
+bindir ?= $(PREFIX)/bin
+libdir ?= $(PREFIX)/lib
+includedir ?= $(PREFIX)/include
+datadir ?= $(PREFIX)/share
+NM ?= nm
+OBJCOPY ?= objcopy
+export NM
+
+library_folders := src data_readers fit
+library_objects := $(filter $(foreach f,$(library_folders),$(patsubst %.c,$(BUILD)/%.o,$(wildcard $(f)/*.c))) \
+	%/kernel_avx2.o,$(lib_objects))
+# What fit/stdfit.h includes is public; what that declares is exported, and nothing else.
+public_headers := fit/stdfit.h $(foreach h,$(shell sed -n 's/^\#include "\(.*\)"/\1/p' fit/stdfit.h), \
+	$(wildcard $(addsuffix /$(h),$(library_folders))))
+shared := libstdfit.so.$(VERSION)
+soname := libstdfit.so.$(firstword $(subst ., ,$(VERSION)))
+
+library: $(BUILD)/libstdfit.a $(BUILD)/$(shared)
+
+$(BUILD)/stdfit.exports: $(library_objects) $(public_headers) scripts/exports.sh
+	$(call quiet,LIST)$(CC) $(ALL_CFLAGS) -E fit/stdfit.h | scripts/exports.sh $(library_objects) >$@.part && mv -f $@.part $@
+
+# -Bsymbolic: the library calls its own functions, whatever a program calls its own.
+$(BUILD)/$(shared): $(library_objects) $(BUILD)/stdfit.exports
+	@{ echo '{ global:'; sed 's/$$/;/' $(BUILD)/stdfit.exports; echo 'local: *; };'; } >$(BUILD)/stdfit.map
+	$(call quiet,LD)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -shared -Wl,-soname,$(soname) -Wl,-Bsymbolic \
+		-Wl,--version-script=$(BUILD)/stdfit.map -o $@ $(library_objects) $(LIBS)
+
+# One object, in which only the public names are global.
+$(BUILD)/libstdfit.a: $(library_objects) $(BUILD)/stdfit.exports
+	$(call quiet,AR)$(CC) -r -nostdlib -o $(BUILD)/libstdfit.o $(library_objects) && \
+		$(OBJCOPY) --keep-global-symbols=$(BUILD)/stdfit.exports $(BUILD)/libstdfit.o && \
+		rm -f $@ && $(AR) rcs $@ $(BUILD)/libstdfit.o
+
+# put MODE,FILES,FOLDER[/NAME]
+put = install -m $(1) $(2) "$(DESTDIR)$(3)"
+
+install: all library
+	install -d $(foreach d,$(bindir) $(libdir)/pkgconfig $(includedir)/stdfit $(datadir)/man/man1 \
+		$(datadir)/bash-completion/completions $(datadir)/zsh/site-functions,"$(DESTDIR)$(d)")
+	$(call put,755,$(BUILD)/stdfit,$(bindir))
+	$(call put,755,$(BUILD)/$(shared),$(libdir))
+	ln -sf $(shared) "$(DESTDIR)$(libdir)/$(soname)"
+	ln -sf $(shared) "$(DESTDIR)$(libdir)/libstdfit.so"
+	$(call put,644,$(BUILD)/libstdfit.a,$(libdir))
+	$(call put,644,$(public_headers),$(includedir)/stdfit)
+	sed 's,@PREFIX@,$(PREFIX),; s,@LIBDIR@,$(libdir),; s,@INCLUDEDIR@,$(includedir),; s,@VERSION@,$(VERSION),; s,@REQUIRES@,$(PKGS),' \
+		scripts/stdfit.pc.in >$(BUILD)/stdfit.pc
+	$(call put,644,$(BUILD)/stdfit.pc,$(libdir)/pkgconfig)
+	$(call put,644,$(BUILD)/stdfit.1,$(datadir)/man/man1)
+	$(call put,644,$(BUILD)/completions/stdfit.bash,$(datadir)/bash-completion/completions/stdfit)
+	$(call put,644,$(BUILD)/completions/_stdfit,$(datadir)/zsh/site-functions)
+
+uninstall:
+	rm -f $(foreach f,$(bindir)/stdfit $(addprefix $(libdir)/,$(shared) $(soname) libstdfit.so libstdfit.a pkgconfig/stdfit.pc) \
+		$(addprefix $(includedir)/stdfit/,$(notdir $(public_headers))) $(datadir)/man/man1/stdfit.1 \
+		$(datadir)/bash-completion/completions/stdfit $(datadir)/zsh/site-functions/_stdfit,"$(DESTDIR)$(f)")
+	[ ! -d "$(DESTDIR)$(includedir)/stdfit" ] || rmdir --ignore-fail-on-non-empty "$(DESTDIR)$(includedir)/stdfit"
+
+# Builds and tests by itself; git's own files apart it is the whole tree.
+dist:
+	@mkdir -p $(BUILD)
+	tar -c --sort=name --owner=0 --group=0 --numeric-owner --exclude='*~' --transform='s,^,stdfit-$(VERSION)/,' \
+		$(filter-out build%,$(wildcard .c* .gitignore [A-Z]* [a-z]*)) | gzip -n >$(BUILD)/stdfit-$(VERSION).tar.gz
+
+.PHONY: library install uninstall dist

@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* An installed copy: what is there, what the libraries export, programs built against it as others would build them. */
+#include "run_program.h"
+
+/* $make, $cc and $lib, for the commands below. */
+#define SETTINGS                                                                                                       \
+	"make=\"${MAKE:-make} -s --no-print-directory -C $ROOT BUILD=$(dirname \"$STDFIT\") PREFIX=$PWD/usr\"\n"       \
+	"cc=\"${CC:-cc} ${OPT-}\" cxx=\"$(echo ${CC:-c++} | sed 's/gcc/g++/; s/clang/clang++/; s/cc$/c++/') "          \
+	"${OPT-}\"\n"                                                                                                  \
+	"export LD_LIBRARY_PATH=$PWD/usr/lib PKG_CONFIG_PATH=$PWD/usr/lib/pkgconfig LC_ALL=C\n"
+
+static void run(const char *command, int code)
+{
+	char *whole;
+	assert_true(asprintf(&whole, SETTINGS "%s", command) > 0);
+	shell(whole);
+	free(whole);
+	if (last.code != code)
+		fail_msg("exit code %d, expected %d, of: %s\n%s%s", last.code, code, command, last.out, last.err);
+}
+
+static void all_is_there(void **state)
+{
+	(void)state;
+	run("cd usr && find . -type f -o -type l | grep -v '^./include/' | sort", 0);
+	expect_out("./bin/stdfit\n./lib/libstdfit.a\n./lib/libstdfit.so\n./lib/libstdfit.so.");
+	expect_out("./lib/pkgconfig/stdfit.pc\n./share/bash-completion/completions/stdfit\n./share/man/man1/stdfit.1\n"
+		   "./share/zsh/site-functions/_stdfit\n");
+	assert_int_equal(count_lines(last.out), 9);
+	run("usr/bin/stdfit --version && pkg-config --modversion stdfit && readelf -d usr/lib/libstdfit.so", 0);
+	expect_out("soname: [libstdfit.so.0]");
+	run("usr/bin/stdfit --version | grep -q \"^stdfit $(pkg-config --modversion stdfit) \"", 0);
+}
+
+/* Nothing but what the installed headers declare, and all of it. (The names of OpenMP's locks begin with a dot.) */
+static void only_public_symbols(void **state)
+{
+	(void)state;
+	run("ls usr/include/stdfit/*.h | grep -v '/stdfit[.]h' | xargs cat | $cc -fpreprocessed -E -P -x c - |"
+	    " awk -f \"$ROOT/tests/declared.awk\" | sort -u >declared\n"
+	    "test $(wc -l <declared) -gt 80 && grep -q -x fit_run declared && ! grep -q -x vec3_dot declared",
+	    0);
+	run("nm -D --defined-only usr/lib/libstdfit.so | awk '{ print $3 }' | grep -v '^__' | sort | diff declared -",
+	    0);
+	run("nm -g --defined-only usr/lib/libstdfit.a | awk 'NF == 3 { print $3 }' | grep -v '^[.]' | sort | diff declared -", 0);
+}
+
+static void headers_stand_alone(void **state)
+{
+	(void)state;
+	run("for h in usr/include/stdfit/*.h; do echo \"#include <stdfit/${h##*/}>\" |"
+	    " $cc -std=c11 -Wall -Wextra -Wpedantic -Werror -Iusr/include -fsyntax-only -x c - || exit 1; done",
+	    0);
+	run("command -v ${cxx%% *} || exit 0\n"
+	    "for h in usr/include/stdfit/*.h; do echo \"#include <stdfit/${h##*/}>\" |"
+	    " $cxx -std=c++11 -Wall -Wextra -Werror -Iusr/include -fsyntax-only -x c++ - || exit 1; done\n"
+	    "echo '#include <stdfit/stdfit.h>\nint main() { return !ndf_find(\"std\"); }' >a.cc\n"
+	    "$cxx -o a a.cc $(pkg-config --cflags --libs stdfit) && ./a",
+	    0);
+}
+
+/* What the examples print and how they end. */
+static void expect_examples(void)
+{
+	double by_samples, exact;
+	run("./sample_ndf", 0);
+	expect_out("D ");
+	const char *albedo = strstr(last.out, "albedo ");
+	assert_non_null(albedo);
+	assert_int_equal(sscanf(albedo, "albedo %lf, by quadrature %lf", &by_samples, &exact), 2);
+	assert_true(exact > 0.5 && exact < 1);
+	check_rel(by_samples, exact, 1e-3, "albedo");
+	run("./fit_table", 0);
+	assert_string_equal(last.out, "sigma 0.2500, n 1.5000\n");
+	expect_part(last.err, "full: ", __LINE__);
+	run("./fit_table 100", 1);
+	assert_string_equal(last.out, "interrupted\n");
+}
+
+#define BUILD_EXAMPLES(flags)                                                                                          \
+	"for e in sample_ndf fit_table; do $cc -std=c11 -Wall -Wextra -Werror -o $e "                                  \
+	"\"$ROOT/tests/examples/$e.c\" " flags " || exit 1; done\n"
+
+static void examples_with_the_shared_library(void **state)
+{
+	(void)state;
+	run(BUILD_EXAMPLES("$(pkg-config --cflags --libs stdfit)") "readelf -d fit_table | grep 'libstdfit.so.0'", 0);
+	expect_examples();
+}
+
+static void examples_with_the_static_library(void **state)
+{
+	(void)state;
+	run("mkdir shared && mv usr/lib/libstdfit.so* shared\n" BUILD_EXAMPLES(
+		    "$(pkg-config --static --cflags --libs stdfit)") "! readelf -d fit_table | grep libstdfit",
+	    0);
+	expect_examples();
+	run("mv shared/* usr/lib", 0);
+}
+
+static void below_another_root(void **state)
+{
+	(void)state;
+	run("$make install PREFIX=/opt/stdfit DESTDIR=$PWD/stage && find stage -maxdepth 3 && cat "
+	    "stage/opt/stdfit/lib/pkgconfig/*",
+	    0);
+	expect_out("stage/opt/stdfit/bin\n");
+	expect_out("prefix=/opt/stdfit\nlibdir=/opt/stdfit/lib\nincludedir=/opt/stdfit/include\n");
+	assert_null(strstr(last.out, test_directory));
+	run("$make uninstall PREFIX=/opt/stdfit DESTDIR=$PWD/stage && find stage ! -type d", 0);
+	assert_string_equal(last.out, "");
+}
+
+/* The last test: takes away what was installed and leaves what was not. */
+static void uninstalls(void **state)
+{
+	(void)state;
+	run("touch usr/include/stdfit/other.h usr/lib/libother.a\n$make uninstall && find usr ! -type d | sort", 0);
+	assert_string_equal(last.out, "usr/include/stdfit/other.h\nusr/lib/libother.a\n");
+	run("rm usr/include/stdfit/other.h; $make install && $make uninstall && find usr ! -type d && test ! -e "
+	    "usr/include/stdfit",
+	    0);
+	assert_string_equal(last.out, "usr/lib/libother.a\n");
+}
+
+/* All that git knows is in the tarball, where this is a clone; what it holds can be made from. */
+static void tarball(void **state)
+{
+	(void)state;
+	run("$make dist && tar -xzf \"$(dirname \"$STDFIT\")\"/stdfit-*.tar.gz && ls -d stdfit-* && cd stdfit-* &&"
+	    " ${MAKE:-make} -n all >/dev/null",
+	    0);
+	assert_int_equal(count_lines(last.out), 1);
+	run("git -C \"$ROOT\" ls-files >known 2>/dev/null || exit 0\n"
+	    "(cd stdfit-* && find . ! -type d | sed 's,^./,,') | sort >packed; sort known | comm -23 - packed",
+	    0);
+	assert_string_equal(last.out, "");
+}
+
+static int set_up(void **state)
+{
+	(void)state;
+	char *root = realpath(".", NULL);
+	if (!root || setenv("ROOT", root, 1) || !enter_directory())
+		return 1;
+	free(root);
+	alarm(900);
+	shell(SETTINGS "$make install");
+	if (last.code)
+		print_error("make install: %s\n", last.err);
+	return last.code;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	return leave_directory();
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(all_is_there),
+		cmocka_unit_test(only_public_symbols),
+		cmocka_unit_test(headers_stand_alone),
+		cmocka_unit_test(examples_with_the_shared_library),
+		cmocka_unit_test(examples_with_the_static_library),
+		cmocka_unit_test(below_another_root),
+		cmocka_unit_test(tarball),
+		cmocka_unit_test(uninstalls),
+	};
+	return cmocka_run_group_tests(tests, set_up, tear_down);
+}
