@@ -110,7 +110,8 @@ environment_tsan = OMP_TOOL_LIBRARIES="$$(clang -print-resource-dir)/../../libar
 # clang-tidy, cppcheck and shellcheck over the whole tree; what they leave out stands in .clang-tidy and .cppcheck.
 lint:
 	@scripts/setup.sh $@
-	@scripts/lint.sh $(filter -D% -I%,$(ALL_CFLAGS))
+	@mkdir -p $(BUILD)/include/stdfit && cp $(public_headers) $(BUILD)/include/stdfit
+	@scripts/lint.sh $(filter -D% -I%,$(ALL_CFLAGS)) -I$(BUILD)/include
 
 # The program under valgrind: no leak, no wrong access.
 valgrind:

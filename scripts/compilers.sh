@@ -4,7 +4,7 @@
 # Do the compilers agree? Builds stdfit with gcc and clang, without and with optimisation, without and with AVX2 where
 # the machine has it; each build fits the same tables, and its parameters are evaluated by every other. Prints the worst
 # differences, of an error as a fraction of it; fails if one exceeds $TOLERANCE (1e-6). The tables are synthetic, or the
-# *.binary of the directory $MERL.
+# *.binary of the directory $MERL; $OPTIONS are further options of the fits.
 set -eu
 
 build=${1:?usage: compilers.sh BUILD}/compilers
@@ -41,7 +41,8 @@ fi
 
 for name in $builds; do
 	echo "compilers.sh: $name fits" >&2
-	"$build/$name/stdfit" fit "$tables" --ndf "$ndfs" -q -o "$work/$name.csv"
+	# shellcheck disable=SC2086 # a list of words
+	"$build/$name/stdfit" fit "$tables" --ndf "$ndfs" -q -o "$work/$name.csv" ${OPTIONS:-}
 done
 
 for own in $builds; do

@@ -94,7 +94,7 @@ static struct fit_options options_for(const struct target *target, const struct 
 	fit.ndf[0] = ndf_find(beckmann ? "beckmann" : "ggx");
 	fit.n_ndf = 1;
 	fit.gaf = target->gaf;
-	fit.fresnel = target->fresnel & 1u << model->fresnel ? model->fresnel : target->instead;
+	fit.fresnel = (target->fresnel & 1u << model->fresnel) ? model->fresnel : target->instead;
 	fit.lambda = LAMBDA_EXACT;
 	fit.sigma = fit.gamma = fit.ior = NAN;
 	fit.diffuse = export_max(model->kd) > 0;

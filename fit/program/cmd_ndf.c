@@ -185,7 +185,6 @@ static enum status run_row(const struct options *options, char *const *row, size
 	if (status == STATUS_DOMAIN) {
 		*bad = true;
 		report_error("row %zu: %.400s", number, why.text);
-		status = STATUS_OK;
 	} else if (status) {
 		return error_set(error, status, "row %zu: %.400s", number, why.text);
 	}

@@ -170,7 +170,6 @@ static enum status make(const struct distribution_words *words, struct distribut
 {
 	const struct ndf_class *class = ndf_find(words->name);
 	double sigma_x, sigma_y, gamma;
-	char shown[TEXT_QUOTE_SIZE];
 	enum status status = number("sigma", words->sigma, NAN, &sigma_x, error);
 	if (!status)
 		status = number("sigma_y", words->sigma_y, sigma_x, &sigma_y, error);
@@ -182,6 +181,7 @@ static enum status make(const struct distribution_words *words, struct distribut
 	if (words->name && !strcmp(words->name, "ellipsoid"))
 		return make_ellipsoid(words, sigma_x, sigma_y, distribution, error);
 	if (!class) {
+		char shown[TEXT_QUOTE_SIZE];
 		text_quote(words->name ? words->name : "", shown, sizeof shown);
 		return error_set(error, STATUS_DOMAIN, "there is no NDF '%s'", shown);
 	}
