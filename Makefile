@@ -9,15 +9,12 @@ OPT ?= -O2 -g
 PKGS := nlopt gsl libxxhash
 PKG_CONFIG ?= pkg-config
 WERROR ?= -Werror
-# Asked once; empty before the set-up has run, when only `setup` is made.
-pkg_cflags := $(shell $(PKG_CONFIG) --cflags $(PKGS) 2>/dev/null)
-pkg_libs := $(shell $(PKG_CONFIG) --libs $(PKGS) 2>/dev/null)
 # Pictures as PNG where libpng is installed; `make PNG=` does without.
 PNG := $(shell $(PKG_CONFIG) --exists libpng 2>/dev/null && echo yes)
-ifneq ($(PNG),)
-pkg_cflags += -DHAVE_LIBPNG $(shell $(PKG_CONFIG) --cflags libpng)
-pkg_libs += $(shell $(PKG_CONFIG) --libs libpng)
-endif
+PKGS += $(if $(PNG),libpng)
+# Asked once; empty before the set-up has run, when only `setup` is made.
+pkg_cflags := $(shell $(PKG_CONFIG) --cflags $(PKGS) 2>/dev/null) $(if $(PNG),-DHAVE_LIBPNG)
+pkg_libs := $(shell $(PKG_CONFIG) --libs $(PKGS) 2>/dev/null)
 # make V=1 shows the commands.
 quiet = $(if $(V),,@echo '  $(1)	$@';)
 

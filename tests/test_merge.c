@@ -186,7 +186,7 @@ static void refusals(void **state)
 	fit_shards("ggx", 3, CHEAP " --ndf ggx");
 	refuse("ggx-1.csv p-2.csv", " for beckmann, as in 'p-2.csv' row 1: another --ndf");
 	refuse("p-2.csv ggx-1.csv", " for beckmann, as in 'p-2.csv' row 1: another --ndf");
-	shell("sed 's/," STDFIT_VERSION "$/,9.8.7/' p-2.csv >future.csv");
+	shell("sed 's/," STDFIT_VERSION ",/,9.8.7,/' p-2.csv >future.csv");
 	refuse("p-1.csv future.csv",
 	       "'future.csv' row 1: made by version '9.8.7', but 'p-1.csv' row 1 by '" STDFIT_VERSION "'");
 	shell("sed 's/converged/limit/' p-2.csv >limit.csv");
