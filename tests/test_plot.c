@@ -224,6 +224,9 @@ static void a_table_becomes_pictures(void **state)
 	expect_files("out", errors_pictures, true);
 	expect_files("out/a", sources, true);
 	expect_files("out/a", pictures, true);
+	/* Of the rows beyond --max-theta nothing is known. */
+	shell("tail -n 1 out/a/map.csv");
+	expect_out("89,89,88.0111111,89,0,NaN,NaN\n");
 	/* The odd name has become a plain one; no part of it was run or has become markup. */
 	expect_files("out/a_b__i___touch_harm__n_x___", pictures, true);
 	shell("grep -c '<i>' out/*/*.svg out/*.svg | grep -v ':0$'");
@@ -364,7 +367,7 @@ static void errors_are_sorted(void **state)
 	      "PATH=/nowhere \"$STDFIT\" plot many.csv -o many");
 	expect_code(1);
 	char *text = slurp("many/errors.csv");
-	assert_string_equal(text, "material,\"std\",\"ggx\"\n\"q\",0.1,0.5\n\"r\",0.2,\n\"p\",0.3,0.35\n");
+	assert_string_equal(text, "material,\"std\",\"ggx\"\n\"q\",0.1,0.5\n\"r\",0.2,NaN\n\"p\",0.3,0.35\n");
 	free(text);
 }
 

@@ -17,11 +17,10 @@ enum status plot_open(struct atomic_file *file, const char *directory, const cha
 	return status;
 }
 
-/* A number behind a comma; nothing for NaN. */
 void plot_number(FILE *file, double x)
 {
 	char text[CSV_NUMBER_SIZE];
-	fprintf(file, ",%s", csv_number(text, x));
+	fprintf(file, ",%s", isnan(x) ? "NaN" : csv_number(text, x));
 }
 
 void plot_text(FILE *file, const char *text)

@@ -347,7 +347,7 @@ static const char palette[] =
 	"set palette defined (0 \"#ffffff\", 0.125 \"#fee8c8\", 0.25 \"#fdd49e\", 0.375 \"#fdbb84\","
 	" 0.5 \"#fc8d59\", 0.625 \"#ef6548\", 0.75 \"#d7301f\", 0.875 \"#b30000\", 1 \"#5f0000\")\n";
 
-enum { MAP_LEFT = 60, MAP_RIGHT = 130, MAP_PANEL = 300, MAP_GAP = 45, MAP_TOP = 70, MAP_BOTTOM = 75 };
+enum { MAP_LEFT = 60, MAP_RIGHT = 130, MAP_PANEL = 300, MAP_GAP = 45, MAP_TOP = 70, MAP_BOTTOM = 100 };
 
 static void put_map_panel(FILE *file, const struct material_data *data, int f)
 {
@@ -356,7 +356,8 @@ static void put_map_panel(FILE *file, const struct material_data *data, int f)
 	fputs("set title ", file);
 	gnuplot_string(file, title);
 	fprintf(file,
-		" noenhanced\nset ylabel \"%s\"\n%s colorbox\nplot \"map.csv\" skip 1 using 1:2:%d with image "
+		" noenhanced\nset ylabel \"%s\"\n%s colorbox\nplot \"map.csv\" skip 1 using 1:2:(low(column(%d))) with "
+		"image "
 		"notitle\n",
 		f % 3 == 0 ? "θ_d (degrees)" : "", f + 1 == data->n ? "set" : "unset", 6 + f);
 }
@@ -378,6 +379,7 @@ static enum status write_map_script(const char *directory, const struct material
 		"row\"\n",
 		palette);
 	fputs("set cbtics (\"≤ 0.03\" 0.03, \"0.1\" 0.1, \"0.3\" 0.3, \"1\" 1, \"3\" 3, \"≥ 10\" 10)\n"
+	      "low(e) = e < 0.03 ? 0.03 : e\n"
 	      "set object rectangle from graph 0,0 to graph 1,1 behind fillstyle solid noborder fillcolor rgb "
 	      "\"#b4bcc4\"\nunset grid\nset border 15\nset tics out\n",
 	      file.stream);
