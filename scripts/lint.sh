@@ -14,5 +14,5 @@ printf '%s\n' $files | xargs -P "$jobs" -I FILE clang-tidy --quiet FILE -- -std=
 # shellcheck disable=SC2086
 cppcheck --quiet --std=c11 --error-exitcode=1 --enable=warning,style,performance,portability --inline-suppr \
 	--suppressions-list=.cppcheck -j "$jobs" -Itests "$@" $files || status=1
-shellcheck scripts/*.sh || status=1
+shellcheck scripts/*.sh tests/*.sh || status=1
 exit $status

@@ -3,23 +3,26 @@
  * directory beside it. */
 #include "atomic_file.h"
 #include "gnuplot.h"
+#include "lighting.h"
 #include "output_directory.h"
 #include "page.h"
 #include "plot_files.h"
+#include "report_spheres.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 /* The pictures of a material, in the order of the page. */
-enum picture { PICTURE_SLICES, PICTURE_MAP, PICTURE_NDF, PICTURES };
+enum picture { PICTURE_SPHERES, PICTURE_SLICES, PICTURE_MAP, PICTURE_NDF, PICTURES };
 
 struct report {
 	const struct options *options;
 	struct progress progress;
 	char *scratch; /* where pictures are made */
 	int code;
-	bool no_gnuplot; /* told already */
-	struct error missing;
+	struct environment environment;
+	bool no_gnuplot, no_png; /* told already; why, below */
+	struct error missing, missing_png;
 };
 
 static void tell(struct report *r, const struct error *error)
@@ -76,31 +79,97 @@ static enum status begin(struct report *r, struct page *page, FILE *file, const 
 	return begun;
 }
 
-/* Draws the plots of a material; the paths of those that are there go to picture[]. Returns whether all are. */
-static bool draw_material(struct report *r, const struct material *material, struct page_picture picture[PICTURES],
-			  struct error *error)
+/* How far the spheres are from the measured one, in words; newly allocated, NULL when out of memory. */
+static char *spheres_caption(const struct material_data *data, const struct picture_error *difference)
+{
+	char *text = NULL;
+	size_t size;
+	FILE *file = open_memstream(&text, &size);
+	if (!file)
+		return NULL;
+	fputs("Spheres in the same light, and in false colours how far each fit's is from the measured one. Mean "
+	      "CIEDE2000 "
+	      "and SSIM:",
+	      file);
+	for (int f = 0; f < data->n; f++)
+		fprintf(file, "%s %s %.2f, %.4f", f ? ";" : "", data->fit[f].ndf, difference[f].delta_e,
+			difference[f].ssim);
+	fputs(".", file);
+	fclose(file);
+	return text;
+}
+
+/* Without libpng the page does without spheres, which is told once. */
+static bool draw_spheres(struct report *r, const struct material_data *data, struct page_picture *picture,
+			 char **caption, struct error *why)
+{
+	struct picture_error difference[FIT_NDFS_MAX] = {{.rmse = 0}};
+	char *path = r->no_png ? NULL : scratch_path(r, "spheres.png");
+	enum status status = STATUS_UNSUPPORTED;
+	if (r->no_png)
+		*why = r->missing_png;
+	else if (path)
+		status = report_spheres(path, data, &r->environment, r->options, difference, why);
+	else
+		status = error_set(why, STATUS_NO_MEMORY, "out of memory");
+	if (!status) {
+		picture->path = path;
+		*caption = spheres_caption(data, difference);
+		picture->caption = *caption ? *caption : "Spheres.";
+		return true;
+	}
+	free(path);
+	if (status == STATUS_UNSUPPORTED && !r->no_png) {
+		progress_erase(&r->progress);
+		report_error("%s: the page has no spheres", why->text);
+		r->no_png = true;
+		r->missing_png = *why;
+	} else if (status != STATUS_UNSUPPORTED && status != STATUS_INTERRUPTED) {
+		tell(r, why);
+	}
+	return false;
+}
+
+static bool draw_plots(struct report *r, const struct material_data *data, struct page_picture picture[PICTURES],
+		       struct error *why)
 {
 	static const char *const name[PICTURES] = {
 		[PICTURE_SLICES] = "slices.svg", [PICTURE_MAP] = "map.png", [PICTURE_NDF] = "ndf.svg"};
-	struct material_data data;
-	enum status status = material_read(material, r->options->fit.threads, &data, error);
-	if (!status)
-		status = plot_material(r->scratch, &data, error);
-	material_data_free(&data);
-	if (status) {
-		tell(r, error);
+	if (plot_material(r->scratch, data, why)) {
+		tell(r, why);
 		return false;
 	}
-	if (!draw(r, plot_material_names, PLOT_MATERIAL_PICTURES, error))
+	if (!draw(r, plot_material_names, PLOT_MATERIAL_PICTURES, why))
 		return false;
-	for (int p = 0; p < PICTURES; p++)
+	for (int p = PICTURE_SLICES; p < PICTURES; p++)
 		picture[p].path = scratch_path(r, name[p]);
 	return true;
+}
+
+/* Draws the pictures of a material; the paths of those that are there go to picture[]. Returns whether all are. */
+static bool draw_material(struct report *r, const struct material *material, struct page_picture picture[PICTURES],
+			  char **caption, struct error *why)
+{
+	struct material_data data;
+	if (material_read(material, r->options->fit.threads, &data, why)) {
+		tell(r, why);
+		return false;
+	}
+	struct error no_spheres;
+	const bool spheres = draw_spheres(r, &data, &picture[PICTURE_SPHERES], caption, &no_spheres);
+	const bool plots = draw_plots(r, &data, picture, why);
+	if (plots && !spheres)
+		*why = no_spheres;
+	material_data_free(&data);
+	return spheres && plots;
 }
 
 static enum status add_material(struct report *r, const struct page *page, size_t m, struct error *error)
 {
 	struct page_picture picture[PICTURES] = {
+		[PICTURE_SPHERES] = {.type = "image/png",
+				     .alt = "spheres in the same light, as measured and as each fit has it, and their "
+					    "differences in false colours."},
 		[PICTURE_SLICES] =
 			{.type = "image/svg+xml",
 			 .plot = true,
@@ -126,12 +195,14 @@ static enum status add_material(struct report *r, const struct page *page, size_
 				 "\x82\x81."},
 	};
 	struct error why;
-	const bool drawn = draw_material(r, &page->materials->material[m], picture, &why);
+	char *caption = NULL;
+	const bool drawn = draw_material(r, &page->materials->material[m], picture, &caption, &why);
 	enum status status = STATUS_INTERRUPTED;
 	if (!*r->options->cancel)
 		status = page_material(page, m, picture, PICTURES, drawn ? NULL : why.text, error);
 	for (int p = 0; p < PICTURES; p++)
 		free(picture[p].path);
+	free(caption);
 	return status;
 }
 
@@ -189,6 +260,10 @@ int cmd_report(int argc, char **argv, atomic_bool *cancel)
 	}
 	struct report report = {.options = &options};
 	struct materials materials;
+	if (lighting_make(&options, &report.environment, &error)) {
+		report_error("%s", error.text);
+		return EXIT_FAILED;
+	}
 	code = materials_collect(&materials, &options);
 	enum status status = STATUS_OK;
 	if (materials.n && code != EXIT_INTERRUPTED)
@@ -198,6 +273,7 @@ int cmd_report(int argc, char **argv, atomic_bool *cancel)
 		report.code = EXIT_FAILED;
 	}
 	materials_free(&materials);
+	environment_free(&report.environment);
 	if (*cancel)
 		return EXIT_INTERRUPTED;
 	return code != EXIT_DONE ? code : report.code;

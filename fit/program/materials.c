@@ -105,7 +105,8 @@ static enum status group_rows(struct materials *materials)
 
 static int read_rows(struct csv_table *rows, const struct options *options)
 {
-	static const char *const useful[] = {"output", "quiet", "threads", "size", "samples", "seed", NULL};
+	static const char *const useful[] = {"output",   "quiet", "threads", "environment", "light",
+					     "exposure", "size",  "samples", NULL};
 	const char *ignored = options_given_beside(options, useful);
 	struct error error;
 	if (ignored)

@@ -208,6 +208,10 @@ struct options options_default(enum command command)
 		options.fit.n_ndf = 1;
 		options.fit.ior = 1.5;
 	}
+	if (command == COMMAND_REPORT) { /* small: a page may hold a hundred of these */
+		options.size = 112;
+		options.pixel_samples = 32;
+	}
 	if (command == COMMAND_BENCH || command == COMMAND_EXPORT)
 		options.fit.n_ndf = 1;
 	return options;
