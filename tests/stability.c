@@ -333,7 +333,8 @@ static void sweep_P2(const struct subject *s)
 	struct row *moments = row_of("moments", s->name);
 	for (int order = 0; order < 40; order += 3) {
 		double value = 0.0;
-		int flags, status;
+		int flags;
+		enum status status;
 		set_place("sigma %g gamma %.17g order %d", ndf->sigma_x, ndf->gamma, order);
 		OBSERVE(status, flags, ndf_moment(ndf, 0.3, order, &value));
 		if (status == STATUS_OK)
