@@ -12,7 +12,7 @@
 #define GRAZING 1e-20
 /* Aimed at for one direction; where many are compared. */
 #define TOLERANCE 1e-8
-#define TOLERANCE_MANY 1e-7
+#define TOLERANCE_MANY 3e-6
 
 enum { REFINEMENTS = 8 };
 
