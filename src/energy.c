@@ -235,3 +235,19 @@ enum status energy_albedo_max(const struct cook_torrance *model, double albedo[3
 	*theta_i = inside ? atan(exp2(best.x)) : normal >= grazing ? 0.0 : 0.5 * M_PI;
 	return STATUS_OK;
 }
+
+static double furnace_at(double theta_i, void *params)
+{
+	return lobe_albedo(params, cos(theta_i), TOLERANCE_MANY) * sin(2.0 * theta_i);
+}
+
+enum status energy_furnace(const struct cook_torrance *model, double *balance)
+{
+	struct cook_torrance mirror = *model;
+	mirror.fresnel = FRESNEL_NONE;
+	struct surface surface;
+	const enum status status = surface_init(&surface, &mirror);
+	if (status == STATUS_OK)
+		*balance = quadrature_adaptive(furnace_at, &surface, 0.0, 0.5 * M_PI, TOLERANCE_MANY);
+	return status;
+}

@@ -29,4 +29,10 @@ MUST_CHECK enum status energy_albedo(const struct cook_torrance *model, double c
  *          lobes of gtr and low ten times as much. */
 MUST_CHECK enum status energy_albedo_max(const struct cook_torrance *model, double albedo[3], double *theta_i);
 
+/* energy_furnace - the white-furnace balance (eq. 24, over pi, which makes it 1 for a lossless surface) of a model's
+ * distribution and G: the share of light from everywhere that comes back after one reflection on facets that lose nothing.
+ * Given:   as energy_lobe(); F, kd and ks are taken as 1, 0 and 1
+ * Returns: STATUS_OK; *balance, absolute error 1e-5. STATUS_UNSUPPORTED as above. */
+MUST_CHECK enum status energy_furnace(const struct cook_torrance *model, double *balance);
+
 #endif

@@ -2,6 +2,7 @@
 #include "check.h"
 #include "chi_square.h"
 #include "energy.h"
+#include <gsl/gsl_integration.h>
 
 static struct cook_torrance mirror(const char *name, double sigma, double gamma, enum gaf gaf)
 {
@@ -189,6 +190,28 @@ static void largest(void **state)
 	}
 }
 
+/* energy_furnace(), whatever kd, ks and F are, against the mean of the lobe's albedo by Gauss and Legendre. */
+static void furnace(void **state)
+{
+	(void)state;
+	gsl_integration_glfixed_table *nodes = gsl_integration_glfixed_table_alloc(32);
+	for (int i = 0; i < 6; i++) {
+		struct cook_torrance model = mirror(i % 2 ? "std" : "ggx", i < 3 ? 0.1 : 0.9, 1.6, (enum gaf)(i % 3));
+		double mean = 0.0, balance;
+		for (size_t k = 0; k < 32; k++) {
+			double theta, weight;
+			gsl_integration_glfixed_point(0.0, 0.5 * M_PI, k, &theta, &weight, nodes);
+			mean += weight * sin(2.0 * theta) * lobe(&model, cos(theta));
+		}
+		model.kd[0] = 0.5;
+		model.fresnel = FRESNEL_SCHLICK;
+		model.n = 1.5;
+		assert_int_equal(energy_furnace(&model, &balance), STATUS_OK);
+		check_abs(balance, mean, 1e-5, "furnace");
+	}
+	gsl_integration_glfixed_table_free(nodes);
+}
+
 static void refusals(void **state)
 {
 	(void)state;
@@ -211,7 +234,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(golden_balance), cmocka_unit_test(sampled),  cmocka_unit_test(limits),
 		cmocka_unit_test(whole_model),    cmocka_unit_test(v_groove), cmocka_unit_test(grazing),
-		cmocka_unit_test(largest),        cmocka_unit_test(refusals),
+		cmocka_unit_test(largest),        cmocka_unit_test(furnace),  cmocka_unit_test(refusals),
 	};
 	return cmocka_run_group_tests_name("energy", tests, NULL, NULL);
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "balance.h"
 #include "energy.h"
-#include "quadrature.h"
 #include <math.h>
 
 struct balance balance_of(const struct cook_torrance *model)
@@ -25,19 +24,9 @@ const char *balance_name(const struct balance *balance)
 	return gain ? "gain" : "ok";
 }
 
-static double at_theta(double theta, void *params)
-{
-	double albedo;
-
-	return energy_lobe(params, cos(theta), &albedo) == STATUS_OK ? albedo * sin(2 * theta) : NAN;
-}
-
 double balance_furnace(const struct cook_torrance *model)
 {
-	struct cook_torrance mirror = *model;
+	double balance;
 
-	mirror.fresnel = FRESNEL_NONE;
-	if (isnan(at_theta(0, &mirror)))
-		return NAN;
-	return quadrature_adaptive(at_theta, &mirror, 0, M_PI / 2, 1e-5);
+	return energy_furnace(model, &balance) == STATUS_OK ? balance : NAN;
 }

@@ -18,9 +18,7 @@ struct balance balance_of(const struct cook_torrance *model);
 /* balance_name - "gain" if a channel sends back more than it gets, else "ok"; "" where the albedo is not known. */
 const char *balance_name(const struct balance *balance);
 
-/* balance_furnace - the white-furnace balance of a model's distribution and G (the STD paper's eq. 24, over pi): the share
- * that comes back, of light that comes from everywhere, after one reflection on lossless facets; in [0, 1] to 1e-6.
- * NaN where energy.h has none. 30 to 300 ms. */
+/* balance_furnace - the white-furnace balance, NaN where energy.h has none. */
 double balance_furnace(const struct cook_torrance *model);
 
 #endif
