@@ -291,11 +291,11 @@ static void put_certainty(FILE *page, const struct material *material)
 		fputs("</tr>\n", page);
 	}
 	end_table(page);
-	fputs("<p class=\"soft\">starts: local searches; starts_agreeing: how many ended within 0.1 % of the best; "
-	      "at_bound: "
-	      "parameters that ended on a bound of their domain; error_, rms_ and log_: the same parameters under "
-	      "other "
-	      "weights and metrics.</p>\n",
+	fputs("<p class=\"soft\">status, undetermined: parameters over whose whole domain the error, the others "
+	      "refitted, moves by less than 0.1 %; starts: local searches; starts_agreeing: how many ended within "
+	      "0.1 % of the best; at_bound: parameters that ended on a bound of their domain; error_, rms_ and "
+	      "log_: the same parameters under other weights and metrics; albedo_: the largest share of the light "
+	      "from one direction that the model sends back; energy, gain: more than it gets.</p>\n",
 	      page);
 }
 
