@@ -132,8 +132,8 @@ static void decode_pixel(const unsigned char p[4], double exposure, float rgb[3]
 enum status image_decode_hdr(const unsigned char *bytes, size_t size, struct image *image, struct error *why)
 {
 	struct reader r = {bytes, size, 0};
-	long width, height;
-	double exposure;
+	long width = 0, height = 0;
+	double exposure = 0;
 	*image = (struct image){0};
 	enum status status = read_header(&r, &width, &height, &exposure, why);
 	if (!status)

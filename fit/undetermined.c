@@ -203,7 +203,7 @@ static enum status descend_finer(struct inquiry *q, const struct pin *pin, const
 static enum status reaches(struct inquiry *q, const struct pin *pin, bool *reached)
 {
 	const struct space space = pinned_space(q, pin);
-	struct space_point place;
+	struct space_point place = {.error = INFINITY};
 	enum status status = descend_coarse(q, pin, &space, &place);
 
 	*reached = place.error <= limit_of(0, q->coarse);

@@ -126,10 +126,10 @@ static int trapping = TRAPS;
 		feclearexcept(FE_ALL_EXCEPT);                                                                          \
 		if (armed)                                                                                             \
 			feenableexcept(trapping);                                                                      \
-		value = expression;                                                                                    \
+		(value) = expression;                                                                                  \
 		if (armed)                                                                                             \
 			fedisableexcept(TRAPS);                                                                        \
-		flags = fetestexcept(TRAPS);                                                                           \
+		(flags) = fetestexcept(TRAPS);                                                                         \
 	} while (0)
 
 static const double eps = 2.220446049250313e-16;

@@ -271,6 +271,8 @@ static bool same(const char *a, const char *b)
 static void check_rows(const char *left, const char *whole, const char *before)
 {
 	char *copy = strdup(left);
+	if (!copy || !whole)
+		fail_msg("nothing to compare");
 	for (char *line = strtok(copy, "\n"); line; line = strtok(NULL, "\n"))
 		if (!strstr(line, ",failed: ") && !strstr(line, ",\"failed: ") && !(whole && strstr(whole, line)) &&
 		    !(before && strstr(before, line)))

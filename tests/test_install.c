@@ -128,7 +128,8 @@ static void uninstalls(void **state)
 static void tarball(void **state)
 {
 	(void)state;
-	run("$make dist && tar -xzf \"$(dirname \"$STDFIT\")\"/stdfit-*.tar.gz && ls -d stdfit-* && cd stdfit-* &&"
+	run("$make dist && tar -xzf \"$(dirname \"$STDFIT\")/stdfit-$(pkg-config --modversion stdfit).tar.gz\" && ls "
+	    "-d stdfit-* && cd stdfit-* &&"
 	    " ${MAKE:-make} -n all >/dev/null",
 	    0);
 	assert_int_equal(count_lines(last.out), 1);

@@ -115,7 +115,7 @@ void export_identifier(const struct export *export, char name[EXPORT_NAME])
 	for (; *from && n < EXPORT_NAME - 1; from++) {
 		const bool plain = (*from >= '0' && *from <= '9') || (*from >= 'a' && *from <= 'z') ||
 				   (*from >= 'A' && *from <= 'Z');
-		name[n++] = plain ? *from : '_';
+		name[n++] = (char)(plain ? *from : '_');
 	}
 	name[n] = '\0';
 }

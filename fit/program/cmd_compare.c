@@ -183,7 +183,7 @@ static void add_pictures(struct comparison *c, char **const *rows, size_t n, dou
 /* Adds the line of rows[0 .. n-1], which are of one material. */
 static enum status add_material(struct comparison *c, char **const *rows, size_t n)
 {
-	double number[MOST_VALUES];
+	double number[MOST_VALUES] = {0};
 	for (int i = 0; i < c->n_ndf; i++)
 		number[i] = NAN;
 	for (size_t i = 0; i < n; i++)

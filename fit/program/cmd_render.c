@@ -112,11 +112,12 @@ static void plan_columns(struct render *render, const struct files *files)
 		struct model_source source;
 		struct chosen chosen;
 		struct error ignored;
-		int column[COLUMNS_MAX];
 		if (model_source_read(options, files->path[i], &source, &ignored))
 			continue;
-		if (!choose(render, &source, files->path[i], &chosen, &ignored))
+		if (!choose(render, &source, files->path[i], &chosen, &ignored)) {
+			int column[COLUMNS_MAX];
 			find_columns(render, &chosen, column, true);
+		}
 		model_source_free(&source);
 	}
 }
