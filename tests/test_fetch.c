@@ -3,6 +3,8 @@
 #include "http_server.h"
 #include "run_program.h"
 
+#include <signal.h>
+
 static struct http_server server, slow_server; /* the second one serves start_slow_runs() */
 /* The tool in use, and whether it is there. */
 static const char *tool;
@@ -445,6 +447,8 @@ static void slow_servers(void **state)
 
 int main(void)
 {
+	/* Started in the background, a shell script that inherits an ignored signal could not be interrupted. */
+	signal(SIGINT, SIG_DFL);
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(good_each),
 		cmocka_unit_test(a_connection_that_breaks_off_each),
