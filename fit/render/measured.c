@@ -6,7 +6,7 @@
 
 static float *entry_at(const struct measured *m, int i, int j, int k)
 {
-	return m->value + SAMPLES_CHANNELS * (size_t)k + (size_t)m->n_phi_d * (size_t)(j + SAMPLES_THETA_D * i);
+	return m->value + SAMPLES_CHANNELS * ((size_t)k + (size_t)m->n_phi_d * (size_t)(j + SAMPLES_THETA_D * i));
 }
 
 static void fill_row(struct measured *m, const struct samples *samples, int i, int j)
