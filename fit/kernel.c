@@ -90,7 +90,7 @@ struct lane_look {
 };
 
 struct accumulator {
-	lanes error, below_w, below_s, dd, ds, ss;
+	lanes error, slope_w, slope_s, dd, ds, ss;
 };
 
 /* 1/x to about 1 %, x > 0: the curvature is an estimate, and a division takes longer than all the rest. */
@@ -108,21 +108,24 @@ __attribute__((always_inline)) static inline void add_lanes(int members, bool cu
 {
 	const lanes w = *(const lanes *)w_at, s = *(const lanes *)s_at, f = look->d * w + look->ks * s;
 	const lanes wide = f + look->floor * w, window = look->tau * wide;
-	lanes_int below = {0}, near = {0};
+	/* Half of sum sign(r): half of the members, less 1 for each below the model. */
+	lanes_int whole = (lanes_int){0} + members / 2, near = {0};
 
 	for (int a = 0; a < members; a++) {
 		const lanes r = *(const lanes *)(m + a * KERNEL_BLOCK) - f;
 		const lanes size = (lanes)((lanes_int)r & 0x7fffffff);
 
 		sum->error += size;
-		below += r < 0; /* -1 for each member below the model */
+		whole += r < 0;
 		if (curved)
 			near += size < window;
 	}
-	const lanes count = __builtin_convertvector(below, lanes);
+	lanes half = __builtin_convertvector(whole, lanes);
 
-	sum->below_w += count * w;
-	sum->below_s += count * s;
+	if (members % 2)
+		half += 0.5F;
+	sum->slope_w += half * w;
+	sum->slope_s += half * s;
 	if (curved) {
 		const lanes density = -__builtin_convertvector(near, lanes) * rough_inverse(wide);
 		const lanes dw = density * w, ds = density * s;
@@ -135,7 +138,7 @@ __attribute__((always_inline)) static inline void add_lanes(int members, bool cu
 
 /* The sums of a block, a lane each, in double. */
 struct lane_sums {
-	lanes_double error, below_w, below_s, sum_w, sum_s, dd, ds, ss;
+	lanes_double error, slope_w, slope_s, dd, ds, ss;
 };
 
 __attribute__((always_inline)) static inline lanes_double widen(lanes a, lanes b)
@@ -158,7 +161,6 @@ __attribute__((always_inline)) static inline void run(int members, bool curved, 
 						      struct lane_sums *sums)
 {
 	struct accumulator a = {0}, b = {0};
-	lanes sum_w = {0}, sum_s = {0};
 
 	for (int n = 0; n < RUN; n += 2 * LANES) {
 		/* What comes next in memory, the next channel or block: the processor's own prefetching ends at each page. */
@@ -166,14 +168,10 @@ __attribute__((always_inline)) static inline void run(int members, bool curved, 
 			__builtin_prefetch(m + n + member * KERNEL_BLOCK);
 		add_lanes(members, curved, m + n, w + n, s + n, look, &a);
 		add_lanes(members, curved, m + n + LANES, w + n + LANES, s + n + LANES, look, &b);
-		sum_w += *(const lanes *)(w + n) + *(const lanes *)(w + n + LANES);
-		sum_s += *(const lanes *)(s + n) + *(const lanes *)(s + n + LANES);
 	}
 	sums->error += widen(a.error, b.error);
-	sums->below_w += widen(a.below_w, b.below_w);
-	sums->below_s += widen(a.below_s, b.below_s);
-	sums->sum_w += __builtin_convertvector(sum_w, lanes_double);
-	sums->sum_s += __builtin_convertvector(sum_s, lanes_double);
+	sums->slope_w += widen(a.slope_w, b.slope_w);
+	sums->slope_s += widen(a.slope_s, b.slope_s);
 	if (curved) {
 		sums->dd += widen(a.dd, b.dd);
 		sums->ds += widen(a.ds, b.ds);
@@ -192,11 +190,9 @@ __attribute__((always_inline)) static inline void block(int members, bool curved
 
 	for (int at = 0; at < KERNEL_BLOCK; at += RUN)
 		run(members, curved, m + at, w + at, s + at, &all, &lane);
-	/* sign(r) is 1 less 2 for each member below, which counts -1; slope = -sum sign(r) (w, s). */
 	*sums = (struct kernel_sums){
 		.error = total(&lane.error),
-		.slope = {-members * total(&lane.sum_w) - 2 * total(&lane.below_w),
-			  -members * total(&lane.sum_s) - 2 * total(&lane.below_s)},
+		.slope = {-2 * total(&lane.slope_w), -2 * total(&lane.slope_s)},
 	};
 	if (curved) {
 		sums->curvature[0] = total(&lane.dd) / look->tau;

@@ -4,7 +4,8 @@
  * A slot is one value of the model; it stands for one measured entry (single) or for two (pair), since
  * phi_d -> 180 deg - phi_d swaps wi and wo and leaves the model as it is. Slots come in blocks of
  * KERNEL_BLOCK, all of one sort, padded with slots whose members are all zero: those add nothing.
- * The file is compiled once for any machine and once for AVX2; kernel_pick() chooses at run time. */
+ * The file is compiled once for any machine and once for AVX2; kernel_pick() chooses at run time. Both give the same
+ * bits: no sum depends on the width of a register, and no multiplication is joined with an addition. */
 #ifndef KERNEL_H
 #define KERNEL_H
 

@@ -4,7 +4,7 @@
 const struct kernel *kernel_pick(void)
 {
 #ifdef KERNEL_HAVE_AVX2
-	if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+	if (__builtin_cpu_supports("avx2"))
 		return &kernel_avx2;
 #endif
 	return &kernel_plain;

@@ -3,16 +3,33 @@
 #include <math.h>
 #include <string.h>
 
+/* Looks that a patient search waits for something better, and those of its first model, taken twice. */
+#define PATIENCE(dims) (2 * (dims) + 2)
+#define FIRST_LOOKS(dims) (4 * (dims) + 2)
+
 struct local {
 	const struct space *space;
 	struct objective *objective;
-	double tolerance;
+	const struct local_how *how;
 	local_note *note;
 	void *user;
 	struct space_point best;
 	double first; /* error of the place it began at */
+	int looks;
+	double least[PATIENCE(SPACE_DIMS)]; /* the least error as of each of the last looks, in turn */
 	nlopt_opt opt;
 };
+
+/* Whether the last looks have brought nothing that matters. */
+static bool is_done(struct local *l)
+{
+	const int dims = l->space->dims, look = l->looks++;
+	double *before = &l->least[look % PATIENCE(dims)];
+	const bool done = look >= FIRST_LOOKS(dims) && *before - l->best.error <= l->how->tolerance * *before;
+
+	*before = l->best.error;
+	return done;
+}
 
 static double evaluate(unsigned dims, const double *x, double *gradient, void *data)
 {
@@ -24,7 +41,7 @@ static double evaluate(unsigned dims, const double *x, double *gradient, void *d
 	(void)gradient;
 	if (cancel && atomic_load_explicit(cancel, memory_order_relaxed))
 		nlopt_force_stop(l->opt);
-	const double error = objective_eval(l->objective, &shape, l->tolerance, false, &linear);
+	const double error = objective_eval(l->objective, &shape, 0.1 * l->how->tolerance, false, &linear);
 
 	if (l->note)
 		l->note(l->user, &shape, &linear);
@@ -34,6 +51,8 @@ static double evaluate(unsigned dims, const double *x, double *gradient, void *d
 		l->best.error = error;
 		memcpy(l->best.x, x, dims * sizeof *x);
 	}
+	if (l->how->patient && is_done(l))
+		nlopt_force_stop(l->opt);
 	return error;
 }
 
@@ -43,12 +62,7 @@ enum status local_descend(const struct space *space, struct objective *o, const 
 	static const double spacing[] = {
 		[COORDINATE_SIGMA] = 0.35, [COORDINATE_GAMMA] = 1.0, [COORDINATE_IOR] = 0.1, [COORDINATE_K] = 0.15};
 	const unsigned dims = (unsigned)space->dims;
-	struct local local = {.space = space,
-			      .objective = o,
-			      .tolerance = 0.1 * how->tolerance,
-			      .note = note,
-			      .user = user,
-			      .best = *place};
+	struct local local = {.space = space, .objective = o, .how = how, .note = note, .user = user, .best = *place};
 	double x[SPACE_DIMS], first[SPACE_DIMS], error;
 
 	objective_forget(o);
@@ -67,7 +81,7 @@ enum status local_descend(const struct space *space, struct objective *o, const 
 	nlopt_set_min_objective(opt, evaluate, &local);
 	nlopt_set_lower_bounds(opt, space->lo);
 	nlopt_set_upper_bounds(opt, space->hi);
-	nlopt_set_ftol_rel(opt, how->tolerance);
+	nlopt_set_ftol_rel(opt, how->patient ? 0 : how->tolerance);
 	nlopt_set_xtol_rel(opt, 1e-5);
 	nlopt_set_maxeval(opt, how->evaluations);
 	if (how->enough > 0)

@@ -11,8 +11,9 @@ struct local_how {
 	nlopt_algorithm algorithm;
 	double step;      /* first step, in about the spacings of the scan's grid */
 	double tolerance; /* of the error, relative */
-	int evaluations;
-	double enough; /* an error at which it may stop; 0: none */
+	int evaluations;  /* at most */
+	bool patient;     /* ends after some looks that lower the error by less than the tolerance together, not one */
+	double enough;    /* an error at which it may stop; 0: none */
 };
 
 /* Told of every look, by the thread that searches; NULL: nobody. */

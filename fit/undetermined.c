@@ -38,8 +38,9 @@ static double limit_of(int level, double best)
 }
 
 /* How each level is searched; the coarsest one decides most. */
-static const struct local_how hows[SEARCH_LEVELS - 1] = {
-	{NLOPT_LN_SBPLX, 0.7, 1e-3, 100, 0}, {NLOPT_LN_SBPLX, 0.3, 1e-4, 40, 0}, {NLOPT_LN_SBPLX, 0.2, 3e-5, 20, 0}};
+static const struct local_how hows[SEARCH_LEVELS - 1] = {{NLOPT_LN_SBPLX, 0.7, 1e-3, 100, false, 0},
+							 {NLOPT_LN_SBPLX, 0.3, 1e-4, 40, false, 0},
+							 {NLOPT_LN_SBPLX, 0.2, 3e-5, 20, false, 0}};
 
 static enum status open_level(const struct inquiry *q, int level, struct objective *o)
 {
