@@ -19,7 +19,7 @@ enum { SAMPLES_THETA_H = 90, SAMPLES_THETA_D = 90, SAMPLES_CHANNELS = 3 };
 
 struct samples {
 	int n_phi_d;                    /* 180 or 360: phi_d of entry k is k (or k + 1/2) degrees either way */
-	float *value[SAMPLES_CHANNELS]; /* 1/sr; [k + n_phi_d (j + 90 i)]; NaN in all three channels = masked */
+	float *value[SAMPLES_CHANNELS]; /* 1/sr; in the order of samples_at; NaN in all three channels = masked */
 	size_t n_negative;  /* entries masked for a negative value in some channel, all three being finite */
 	size_t n_nonfinite; /* entries masked for NaN, Inf or a value beyond float in some channel */
 	uint64_t file_size; /* bytes of the file read; 0 for a table that was made */
@@ -43,6 +43,12 @@ void samples_free(struct samples *samples);
 static inline size_t samples_count(const struct samples *samples)
 {
 	return (size_t)SAMPLES_THETA_H * SAMPLES_THETA_D * (size_t)samples->n_phi_d;
+}
+
+/* samples_at - which place of a plane with this n_phi_d entry (i, j, k) of theta_h, theta_d, phi_d has: the file's order. */
+static inline size_t samples_at(int n_phi_d, int i, int j, int k)
+{
+	return (size_t)k + (size_t)n_phi_d * ((size_t)j + SAMPLES_THETA_D * (size_t)i);
 }
 
 /* bins_angles - theta_h, theta_d, phi_d (radians) of entry (i, j, k); 0 <= i, j < 90, 0 <= k < n_phi_d. */

@@ -7,7 +7,7 @@
 static void fill_row(struct samples *samples, const struct cook_torrance *model, const struct entries *entries,
 		     double min_cos, int i, int j)
 {
-	const size_t at = (size_t)samples->n_phi_d * (size_t)(j + SAMPLES_THETA_D * i);
+	const size_t at = samples_at(samples->n_phi_d, i, j, 0);
 	for (int k = 0; k < samples->n_phi_d; k++) {
 		struct vec3 wi, wo;
 		double f[SAMPLES_CHANNELS];

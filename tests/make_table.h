@@ -41,7 +41,7 @@ static inline struct samples make_sparse_table(const struct cook_torrance *model
 			unsigned seed = (unsigned)(i * 91 + j);
 
 			for (int k = 0; k < n_phi_d; k += step) {
-				const size_t at = (size_t)(j + SAMPLES_THETA_D * i) * (size_t)n_phi_d + (size_t)k;
+				const size_t at = samples_at(n_phi_d, i, j, k);
 				struct vec3 wi, wo;
 				double f[3];
 

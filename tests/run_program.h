@@ -165,22 +165,23 @@ static inline void write_text(const char *path, const char *text)
 	assert_int_equal(fclose(file), 0);
 }
 
-/* Goes into a new directory, with the absolute name of the program in $STDFIT. For a group's set-up: false on failure.
- */
-static inline bool enter_directory(void)
+/* A group's set-up, or the first of it: goes into a new directory, with the absolute name of the program in $STDFIT. */
+static inline int enter_directory(void **state)
 {
+	(void)state;
 	const char *given = getenv("STDFIT");
 	char *program = realpath(given ? given : "build/stdfit", NULL);
 	const bool ready =
 		program && !setenv("STDFIT", program, 1) && mkdtemp(test_directory) && !chdir(test_directory);
 	free(program);
 	alarm(1800); /* a hang ends; a machine that is busy with other things is no hang */
-	return ready;
+	return ready ? 0 : -1;
 }
 
-/* Removes it and all that is in it. Returns 0, or what `rm` ended with. */
-static inline int leave_directory(void)
+/* A group's tear-down, or the last of it: removes the directory and all that is in it. */
+static inline int leave_directory(void **state)
 {
+	(void)state;
 	free(last.out);
 	free(last.err);
 	last.out = last.err = NULL;

@@ -484,7 +484,6 @@ static void heavy(void **state)
 
 static int set_up(void **state)
 {
-	(void)state;
 	void *frame[4];
 	/* What it loads at first, and keeps, is there before the forks. */
 	if (__lsan_disable)
@@ -493,7 +492,7 @@ static int set_up(void **state)
 	if (__lsan_enable)
 		__lsan_enable();
 	control = mmap(NULL, sizeof *control, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-	if (control == MAP_FAILED || !enter_directory())
+	if (control == MAP_FAILED || enter_directory(state))
 		return -1;
 	alarm(getenv("STDFIT_ALLOC") ? 0 : 300);
 	shell("\"$STDFIT\" synth a.binary --ndf ggx --sigma 0.2 --ior 1.5 --kd 0.3,0.2,0.1 --ks 0.5 && ln a.binary "
@@ -503,17 +502,11 @@ static int set_up(void **state)
 	return last.code;
 }
 
-static int tear_down(void **state)
-{
-	(void)state;
-	return leave_directory();
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(light),
 		cmocka_unit_test(heavy),
 	};
-	return cmocka_run_group_tests(tests, set_up, tear_down);
+	return cmocka_run_group_tests(tests, set_up, leave_directory);
 }

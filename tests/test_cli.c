@@ -50,8 +50,7 @@ static const int32_t sound[3] = {90, 90, 180};
 
 static int set_up(void **state)
 {
-	(void)state;
-	if (!enter_directory())
+	if (enter_directory(state))
 		return -1;
 	shell("exec \"$STDFIT\" synth a.binary --ndf ggx --sigma 0.2 --ior 1.5 --kd 0.3,0.2,0.1 --ks 0.5\n");
 	if (last.code)
@@ -59,12 +58,6 @@ static int set_up(void **state)
 	shell("mkdir good bad mixed; for f in good/x good/y good/z mixed/a; do ln a.binary $f.binary; done;"
 	      "echo text >mixed/README; head -c 1000 a.binary >mixed/short.binary; ln a.binary mixed/z.binary");
 	return last.code;
-}
-
-static int tear_down(void **state)
-{
-	(void)state;
-	return leave_directory();
 }
 
 static void help_and_version(void **state)
@@ -726,5 +719,5 @@ int main(void)
 		cmocka_unit_test(within_takes_the_simplest),
 		cmocka_unit_test(noise_follows_the_seed),
 	};
-	return cmocka_run_group_tests(tests, set_up, tear_down);
+	return cmocka_run_group_tests(tests, set_up, leave_directory);
 }

@@ -205,7 +205,8 @@ static void what_is_refused(void **state)
 	       "no4.binary no5.binary no6.binary no7.binary no8.binary");
 	expect_error(1, "the picture would be too large");
 	assert_false(is_there("no.pfm"));
-	shell("{ printf 'PF\\n2 1\\n-1\\n'; printf '\\0\\0\\200?\\0\\0\\200?\\0\\0\\200?'; printf '\\0\\0\\200?\\0\\0\\200?\\0\\0\\200?'; } "
+	shell("{ printf 'PF\\n2 1\\n-1\\n'; printf '\\0\\0\\200?\\0\\0\\200?\\0\\0\\200?'; printf "
+	      "'\\0\\0\\200?\\0\\0\\200?\\0\\0\\200?'; } "
 	      ">light.pfm; cp light.pfm light.bak");
 	stdfit("render m.binary " MODEL " " QUICK " -e light.pfm -o ./light.pfm");
 	expect_error(2, "--output names a file that is to be read");
@@ -240,20 +241,13 @@ static void interrupted(void **state)
 
 static int set_up(void **state)
 {
-	(void)state;
-	if (!enter_directory())
+	if (enter_directory(state))
 		return -1;
 	stdfit("synth m.binary " MODEL);
 	expect_code(0);
 	stdfit("synth n.binary --ndf ggx --sigma 0.1 --kd 0.05 --ks 1");
 	expect_code(0);
 	return 0;
-}
-
-static int tear_down(void **state)
-{
-	(void)state;
-	return leave_directory();
 }
 
 int main(void)
@@ -264,5 +258,5 @@ int main(void)
 		cmocka_unit_test(light_of_several_kinds),          cmocka_unit_test(what_is_refused),
 		cmocka_unit_test(one_bad_file_costs_only_itself),  cmocka_unit_test(interrupted),
 	};
-	return cmocka_run_group_tests(tests, set_up, tear_down);
+	return cmocka_run_group_tests(tests, set_up, leave_directory);
 }

@@ -724,18 +724,6 @@ static void refusals_are_one_line(void **state)
 	assert_string_equal(last.out, "");
 }
 
-static int set_up(void **state)
-{
-	(void)state;
-	return enter_directory() ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-	(void)state;
-	return leave_directory();
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -754,5 +742,5 @@ int main(void)
 		cmocka_unit_test(refusals_are_one_line),
 	};
 
-	return cmocka_run_group_tests(tests, set_up, tear_down);
+	return cmocka_run_group_tests(tests, enter_directory, leave_directory);
 }

@@ -76,7 +76,6 @@ static void start_slow_runs(void)
 
 static int set_up(void **state)
 {
-	(void)state;
 	static const char *const unwanted[] = {"http_proxy", "HTTP_PROXY",   "all_proxy",
 					       "ALL_PROXY",  "MERL_ADDRESS", "WGETRC"};
 	char *top = realpath(".", NULL);
@@ -87,7 +86,7 @@ static int set_up(void **state)
 	free(top);
 	for (size_t i = 0; i < sizeof unwanted / sizeof *unwanted; i++)
 		unsetenv(unwanted[i]);
-	if (!enter_directory() || setenv("HOME", test_directory, 1))
+	if (enter_directory(state) || setenv("HOME", test_directory, 1))
 		return -1;
 	server = http_start("requests");
 	slow_server = http_start("slow-requests");
@@ -103,10 +102,9 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-	(void)state;
 	http_stop(&server);
 	http_stop(&slow_server);
-	return leave_directory();
+	return leave_directory(state);
 }
 
 /* Runs a test with each tool that is there. */

@@ -16,17 +16,10 @@
 
 static int set_up(void **state)
 {
-	(void)state;
-	if (!enter_directory())
+	if (enter_directory(state))
 		return -1;
 	stdfit("synth a.binary --ndf ggx --sigma 0.2 --ior 1.5 --kd 0.3,0.2,0.1 --ks 0.5");
 	return last.code || chmod(".", 0755);
-}
-
-static int tear_down(void **state)
-{
-	(void)state;
-	return leave_directory();
 }
 
 /* How many files there are in the directory whose names begin so. */
@@ -420,5 +413,5 @@ int main(void)
 		cmocka_unit_test(outputs_on_a_full_disk),
 		cmocka_unit_test(closed_streams),
 	};
-	return cmocka_run_group_tests(tests, set_up, tear_down);
+	return cmocka_run_group_tests(tests, set_up, leave_directory);
 }

@@ -141,9 +141,8 @@ static void tarball(void **state)
 
 static int set_up(void **state)
 {
-	(void)state;
 	char *root = realpath(".", NULL);
-	if (!root || setenv("ROOT", root, 1) || !enter_directory())
+	if (!root || setenv("ROOT", root, 1) || enter_directory(state))
 		return 1;
 	free(root);
 	alarm(900);
@@ -151,12 +150,6 @@ static int set_up(void **state)
 	if (last.code)
 		print_error("make install: %s\n", last.err);
 	return last.code;
-}
-
-static int tear_down(void **state)
-{
-	(void)state;
-	return leave_directory();
 }
 
 int main(void)
@@ -171,5 +164,5 @@ int main(void)
 		cmocka_unit_test(tarball),
 		cmocka_unit_test(uninstalls),
 	};
-	return cmocka_run_group_tests(tests, set_up, tear_down);
+	return cmocka_run_group_tests(tests, set_up, leave_directory);
 }

@@ -3,18 +3,6 @@
 #include "option_value.h"
 #include "run_program.h"
 
-static int set_up(void **state)
-{
-	(void)state;
-	return enter_directory() ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-	(void)state;
-	return leave_directory();
-}
-
 static bool installed(const char *tool)
 {
 	char command[64];
@@ -250,5 +238,5 @@ int main(void)
 		cmocka_unit_test(zsh_completes_as_typed),
 		cmocka_unit_test(other_shells_are_refused),
 	};
-	return cmocka_run_group_tests(tests, set_up, tear_down);
+	return cmocka_run_group_tests(tests, enter_directory, leave_directory);
 }

@@ -9,8 +9,7 @@
 /* Seven good files, one of them with a difficult name, and a bad one; whole.csv, the table of one run. */
 static int set_up(void **state)
 {
-	(void)state;
-	if (!enter_directory())
+	if (enter_directory(state))
 		return -1;
 	shell("mkdir all; for s in 1 2; do \"$STDFIT\" synth $s.binary --ndf ggx --sigma 0.$s --ior 1.5 --kd 0.3 --ks "
 	      "0.5;"
@@ -18,12 +17,6 @@ static int set_up(void **state)
 	      "all/$f.binary; done; head -c 1000 1.binary >all/short.binary; exec \"$STDFIT\" all " CHEAP
 	      " -o whole.csv");
 	return last.code == 1 ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-	(void)state;
-	return leave_directory();
 }
 
 /* Fits all shares of the directory into NAME-1.csv ... NAME-n.csv. */
@@ -294,5 +287,5 @@ int main(void)
 		cmocka_unit_test(wrong_usage),
 		cmocka_unit_test(with_within),
 	};
-	return cmocka_run_group_tests(tests, set_up, tear_down);
+	return cmocka_run_group_tests(tests, set_up, leave_directory);
 }

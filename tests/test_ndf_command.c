@@ -473,16 +473,14 @@ static void refusals(void **state)
 
 static int set_up(void **state)
 {
-	(void)state;
 	top = getcwd(NULL, 0);
-	return top && enter_directory() ? 0 : -1;
+	return top ? enter_directory(state) : -1;
 }
 
 static int tear_down(void **state)
 {
-	(void)state;
 	free(top);
-	return leave_directory();
+	return leave_directory(state);
 }
 
 int main(void)

@@ -55,8 +55,7 @@ static struct reference brute_force(const struct samples *samples, const struct 
 	for (int i = 0; i < SAMPLES_THETA_H; i++)
 		for (int j = 0; j < SAMPLES_THETA_D; j++)
 			for (int k = 0; k < samples->n_phi_d; k++) {
-				const size_t at =
-					(size_t)(j + SAMPLES_THETA_D * i) * (size_t)samples->n_phi_d + (size_t)k;
+				const size_t at = samples_at(samples->n_phi_d, i, j, k);
 				const double deg = 180 / M_PI;
 				struct vec3 wi, wo;
 				double f[3];

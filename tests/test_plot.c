@@ -27,7 +27,7 @@ static bool have_gnuplot(void)
 static void mask_entry(struct samples *samples, int i, int j, int k)
 {
 	for (int c = 0; c < 3; c++)
-		samples->value[c][k + samples->n_phi_d * (j + SAMPLES_THETA_D * i)] = NAN;
+		samples->value[c][samples_at(samples->n_phi_d, i, j, k)] = NAN;
 }
 
 /* The rows of the map add up to E, under each weight, bins and G; a single row is what the model itself says. */
@@ -77,7 +77,7 @@ static void a_row_of_the_map_is_what_the_model_says(void **state)
 		halfdiff_trig_dirs(bins_trig(BINS_NODE, I, J, k), &wi, &wo);
 		cook_torrance_f(&model, wi, wo, f);
 		for (int c = 0; c < 3 && wi.z > 1e-9 && wo.z > 1e-9; c++) {
-			const double m = (double)measured_table.value[c][k + 180 * (J + SAMPLES_THETA_D * I)];
+			const double m = (double)measured_table.value[c][samples_at(180, I, J, k)];
 			difference += fabs(m - f[c]);
 			measured += m;
 		}
@@ -399,8 +399,7 @@ static void it_can_be_interrupted(void **state)
 
 static int set_up(void **state)
 {
-	(void)state;
-	if (!enter_directory())
+	if (enter_directory(state))
 		return -1;
 	table_model = make_model("ggx", 0.23, 2, 1.62);
 	measured_table = make_table(&table_model, 180, BINS_NODE, NOISE);
@@ -411,9 +410,8 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-	(void)state;
 	samples_free(&measured_table);
-	return leave_directory();
+	return leave_directory(state);
 }
 
 int main(void)

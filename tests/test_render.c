@@ -514,10 +514,10 @@ static void gaps_take_their_neighbours_value(void **state)
 		for (int j = 0; j < 4; j++)
 			for (int k = 0; k < 180; k++)
 				for (int c = 0; c < 3 && !(i == 5 && k == 7); c++)
-					samples.value[c][k + 180 * (j + 90 * i)] = (float)(1 + j + 10 * i);
+					samples.value[c][samples_at(180, i, j, k)] = (float)(1 + j + 10 * i);
 	assert_int_equal(measured_init(&measured, &samples, BINS_NODE), STATUS_OK);
-	assert_true(measured.value[3 * (100 + 180 * (40 + 90 * 20))] == 204.0F);
-	assert_true(measured.value[3 * (7 + 180 * (2 + 90 * 5)) + 1] == 41.0F);
+	assert_true(measured.value[3 * samples_at(180, 20, 40, 100)] == 204.0F);
+	assert_true(measured.value[3 * samples_at(180, 5, 2, 7) + 1] == 41.0F);
 	measured_free(&measured);
 	samples_free(&samples);
 	/* Below the horizon there is nothing. */

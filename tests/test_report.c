@@ -244,9 +244,8 @@ static void an_interrupt_leaves_the_old_page(void **state)
 
 static int set_up(void **state)
 {
-	(void)state;
 	browser_script = realpath("tests/browser.sh", NULL);
-	if (!browser_script || !enter_directory())
+	if (!browser_script || enter_directory(state))
 		return -1;
 	/* Three materials of one file. */
 	shell("\"$STDFIT\" synth a.binary --ndf ggx --sigma 0.2 --ior 1.5 --kd 0.3,0.2,0.1 --ks 0.5 && \"$STDFIT\" fit "
@@ -262,9 +261,8 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-	(void)state;
 	free(browser_script);
-	return leave_directory();
+	return leave_directory(state);
 }
 
 int main(void)

@@ -157,7 +157,6 @@ static void stop_slurm(void)
 
 static int set_up(void **state)
 {
-	(void)state;
 	char *top = realpath(".", NULL), *path;
 	if (!top || setenv("TOP", top, 1) || asprintf(&path, "%s:/usr/sbin:/sbin", getenv("PATH")) < 0 ||
 	    setenv("PATH", path, 1))
@@ -166,7 +165,7 @@ static int set_up(void **state)
 	free(path);
 	/* Processes that lose their parent get us for one: none is left when we end. */
 	prctl(PR_SET_CHILD_SUBREAPER, 1);
-	if (!enter_directory() || setenv("HOME", test_directory, 1) || chmod(test_directory, 0755))
+	if (enter_directory(state) || setenv("HOME", test_directory, 1) || chmod(test_directory, 0755))
 		return -1;
 	char configuration[256];
 	snprintf(configuration, sizeof configuration, "%s/slurm.conf", test_directory);
@@ -180,9 +179,8 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-	(void)state;
 	stop_slurm();
-	return leave_directory();
+	return leave_directory(state);
 }
 
 static void expect_whole(const char *path)

@@ -143,7 +143,7 @@ static struct samples one_entry(void)
 
 	change_all(&s, nothing);
 	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		s.value[c][12 + 180 * (20 + 90 * 30)] = 5;
+		s.value[c][samples_at(180, 30, 20, 12)] = 5;
 	return s;
 }
 

@@ -46,7 +46,7 @@ static void add_row(const struct export *export, const struct samples *samples, 
 	const double min_cos = max_theta_cos(fit->max_theta);
 	for (int j = 0; j < SAMPLES_THETA_D; j++)
 		for (int k = 0; k < samples->n_phi_d; k++) {
-			const size_t at = (size_t)k + (size_t)samples->n_phi_d * (size_t)(j + SAMPLES_THETA_D * i);
+			const size_t at = samples_at(samples->n_phi_d, i, j, k);
 			struct vec3 wi, wo;
 			double f[3];
 			entries_dirs(entries, i, j, k, &wi, &wo);

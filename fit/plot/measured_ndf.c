@@ -39,7 +39,7 @@ static double lobe_per_D(const struct reading *r, struct vec3 wi, struct vec3 wo
 static size_t entry_wishes(const struct reading *r, int i, int j, int k, double F, struct wish *wish)
 {
 	const struct samples *samples = r->samples;
-	const size_t at = (size_t)(j + SAMPLES_THETA_D * i) * (size_t)samples->n_phi_d + (size_t)k;
+	const size_t at = samples_at(samples->n_phi_d, i, j, k);
 	struct vec3 wi, wo;
 	size_t n = 0;
 

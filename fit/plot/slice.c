@@ -5,7 +5,7 @@ enum { MIDDLE = 90 }; /* index of phi_d, in the 360 table too */
 
 void slice_measured(const struct samples *samples, int i, int j, double m[SAMPLES_CHANNELS])
 {
-	const size_t at = (size_t)(j + SAMPLES_THETA_D * i) * (size_t)samples->n_phi_d + MIDDLE;
+	const size_t at = samples_at(samples->n_phi_d, i, j, MIDDLE);
 
 	for (int c = 0; c < SAMPLES_CHANNELS; c++)
 		m[c] = (double)samples->value[c][at];

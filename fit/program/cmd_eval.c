@@ -111,12 +111,5 @@ int cmd_eval(int argc, char **argv, atomic_bool *cancel)
 	struct evaluation e = {.path = options.path[0], .output = csv_table_make(columns, EVAL_COLUMNS)};
 	const enum status status = evaluate_all(&e, &options, &error);
 	samples_free(&e.samples);
-	if (!status)
-		report_output(&e.output, options_show(&options), report_records);
-	else if (status != STATUS_INTERRUPTED)
-		report_error("%s", error.text);
-	csv_table_free(&e.output);
-	if (*cancel)
-		return EXIT_INTERRUPTED;
-	return status ? EXIT_FAILED : EXIT_DONE;
+	return options_end(&options, status, &error, &e.output, report_records);
 }

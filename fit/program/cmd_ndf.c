@@ -233,12 +233,6 @@ int cmd_ndf(int argc, char **argv, atomic_bool *cancel)
 	struct csv_table output = csv_table_make(columns, NDF_COLUMNS);
 	const enum status status =
 		input ? run_input(&options, &output, &bad, &error) : run_options(&options, &output, &error);
-	if (!status)
-		report_output(&output, options_show(&options), report_table);
-	else if (status != STATUS_INTERRUPTED)
-		report_error("%s", error.text);
-	csv_table_free(&output);
-	if (*cancel)
-		return EXIT_INTERRUPTED;
-	return status || bad ? EXIT_FAILED : EXIT_DONE;
+	code = options_end(&options, status, &error, &output, report_table);
+	return code == EXIT_DONE && bad ? EXIT_FAILED : code;
 }

@@ -102,12 +102,5 @@ int cmd_sample(int argc, char **argv, atomic_bool *cancel)
 		return code;
 	struct csv_table output = csv_table_make(columns, SAMPLE_COLUMNS);
 	const enum status status = run(&options, &output, &error);
-	if (!status)
-		report_output(&output, options_show(&options), report_table);
-	else if (status != STATUS_INTERRUPTED)
-		report_error("%s", error.text);
-	csv_table_free(&output);
-	if (*cancel)
-		return EXIT_INTERRUPTED;
-	return status ? EXIT_FAILED : EXIT_DONE;
+	return options_end(&options, status, &error, &output, report_table);
 }

@@ -48,22 +48,25 @@ static const struct command_text commands[COMMAND_COUNT] = {
 	[COMMAND_INFO] = {"info", "FILE...", "what is in a MERL file: validity, ranges, suspects",
 			  "Shows size, hash, valid, negative and non-finite entries, and the range of the valid\n"
 			  "values above the horizon per channel (1/sr).\n"},
-	[COMMAND_EXPORT] = {"export", "[FILE]", "a model for another program: BRDF Explorer, Mitsuba 3, pbrt-v4, glTF, ...",
-			    "Writes one model: fitted to FILE, from the row of FILE's material in a result table, from\n"
-			    "any row of it (--row), or from given parameters (--kd, --ks, ...). The first lines say\n"
-			    "whether the export is exact or approximate, and why. Where the target has no such model, one\n"
-			    "that it has is fitted in its place, to FILE or the file of the row if that can be read, else\n"
-			    "to the model's own table; the export says what that costs in error.\n"},
-	[COMMAND_NDF] = {"ndf", "[NAME]", "D, P22, P2, Lambda, G1 and pdf of a distribution as a table",
-			 "Tabulates a normal distribution function: D and pdf of the normal at theta and phi, P22 of its\n"
-			 "slope, P2 of the slope tan(theta) along phi, Lambda and G1 of the direction there; with --theta-i\n"
-			 "the density of the normal among those visible, and the weight of such a sample. NAME is an NDF,\n"
-			 "ellipsoid, or - for rows of standard input: a CSV with the columns ndf, sigma, sigma_y, gamma,\n"
-			 "params, lambda, theta, phi, theta_i, as far as needed. With --from, the NDFs of a result table.\n"},
-	[COMMAND_SAMPLE] = {"sample", "[NAME]", "random normals of a distribution, and where they reflect to",
-			    "Draws normals m, visible or all, with their density. With --theta-i also the direction wo into\n"
-			    "which each reflects, its density, and its weight: the mean of the weights is the directional\n"
-			    "albedo of the lobe without its Fresnel term.\n"},
+	[COMMAND_EXPORT] =
+		{"export", "[FILE]", "a model for another program: BRDF Explorer, Mitsuba 3, pbrt-v4, glTF, ...",
+		 "Writes one model: fitted to FILE, from the row of FILE's material in a result table, from\n"
+		 "any row of it (--row), or from given parameters (--kd, --ks, ...). The first lines say\n"
+		 "whether the export is exact or approximate, and why. Where the target has no such model, one\n"
+		 "that it has is fitted in its place, to FILE or the file of the row if that can be read, else\n"
+		 "to the model's own table; the export says what that costs in error.\n"},
+	[COMMAND_NDF] =
+		{"ndf", "[NAME]", "D, P22, P2, Lambda, G1 and pdf of a distribution as a table",
+		 "Tabulates a normal distribution function: D and pdf of the normal at theta and phi, P22 of its\n"
+		 "slope, P2 of the slope tan(theta) along phi, Lambda and G1 of the direction there; with --theta-i\n"
+		 "the density of the normal among those visible, and the weight of such a sample. NAME is an NDF,\n"
+		 "ellipsoid, or - for rows of standard input: a CSV with the columns ndf, sigma, sigma_y, gamma,\n"
+		 "params, lambda, theta, phi, theta_i, as far as needed. With --from, the NDFs of a result table.\n"},
+	[COMMAND_SAMPLE] =
+		{"sample", "[NAME]", "random normals of a distribution, and where they reflect to",
+		 "Draws normals m, visible or all, with their density. With --theta-i also the direction wo into\n"
+		 "which each reflects, its density, and its weight: the mean of the weights is the directional\n"
+		 "albedo of the lobe without its Fresnel term.\n"},
 	[COMMAND_SYNTH] = {"synth", "OUT.binary", "write a MERL file of a model",
 			   "Writes the table that an ideal measurement of the model would give; -1 below the\n"
 			   "horizon.\n"},
@@ -74,16 +77,18 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "are fitted, taken from a result table (--from, or FILE.csv as the only path: the files it\n"
 		 "names), or given (--kd, --ks, ...). Reports how different model and table look: rmse of linear\n"
 		 "values, delta_e the mean CIEDE2000, ssim the structural similarity.\n"},
-	[COMMAND_PLOT] = {"plot", "PATH...", "fits, or the course of searches, as plots by gnuplot",
-			  "Takes a result table (FILE.csv), or fits MERL files or directories. Writes into the directory\n"
-			  "of -o the errors of all materials, sorted; and per material D and G1 of each fit against the\n"
-			  "NDF read off the data, slices, measured against fitted, and the error over theta_h and\n"
-			  "theta_d: each as PNG, SVG, CSV and the script that draws it. Of a trace (see fit --trace) it\n"
-			  "draws the error against time.\n"},
-	[COMMAND_REPORT] = {"report", "PATH...", "fits as one HTML page that needs no other file",
-			    "Takes a result table (FILE.csv), or fits MERL files or directories. Writes index.html into the\n"
-			    "directory of -o: a summary, a table that can be sorted, and per material its plots (see\n"
-			    "stdfit plot), parameters, their certainty, options and versions.\n"},
+	[COMMAND_PLOT] =
+		{"plot", "PATH...", "fits, or the course of searches, as plots by gnuplot",
+		 "Takes a result table (FILE.csv), or fits MERL files or directories. Writes into the directory\n"
+		 "of -o the errors of all materials, sorted; and per material D and G1 of each fit against the\n"
+		 "NDF read off the data, slices, measured against fitted, and the error over theta_h and\n"
+		 "theta_d: each as PNG, SVG, CSV and the script that draws it. Of a trace (see fit --trace) it\n"
+		 "draws the error against time.\n"},
+	[COMMAND_REPORT] =
+		{"report", "PATH...", "fits as one HTML page that needs no other file",
+		 "Takes a result table (FILE.csv), or fits MERL files or directories. Writes index.html into the\n"
+		 "directory of -o: a summary, a table that can be sorted, and per material its plots (see\n"
+		 "stdfit plot), parameters, their certainty, options and versions.\n"},
 };
 
 const struct command_text *options_command(enum command command)
@@ -446,7 +451,8 @@ int options_model(const struct options *options, struct cook_torrance *model)
 	const int wrong = check_model(options);
 	if (wrong >= 0)
 		return wrong;
-	*model = (struct cook_torrance){.gaf = fit->gaf, .fresnel = fit->fresnel, .n = isnan(fit->ior) ? 1.5 : fit->ior, .k = options->k};
+	*model = (struct cook_torrance){
+		.gaf = fit->gaf, .fresnel = fit->fresnel, .n = isnan(fit->ior) ? 1.5 : fit->ior, .k = options->k};
 	memcpy(model->kd, options->kd, sizeof model->kd);
 	memcpy(model->ks, options->ks, sizeof model->ks);
 	const double sigma = isnan(fit->sigma) ? 1 : fit->sigma, gamma = isnan(fit->gamma) ? 2 : fit->gamma;
@@ -464,4 +470,17 @@ enum show options_show(const struct options *options)
 	if (options->readable || isatty(STDOUT_FILENO))
 		return SHOW_READABLE;
 	return options->output ? SHOW_NOTHING : SHOW_CSV;
+}
+
+int options_end(const struct options *options, enum status status, const struct error *error, struct csv_table *table,
+		report_readable *readable)
+{
+	if (!status)
+		report_output(table, options_show(options), readable);
+	else if (status != STATUS_INTERRUPTED)
+		report_error("%s", error->text);
+	csv_table_free(table);
+	if (*options->cancel)
+		return EXIT_INTERRUPTED;
+	return status ? EXIT_FAILED : EXIT_DONE;
 }

@@ -78,6 +78,11 @@ MUST_CHECK int options_check_fit(const struct options *options);
  * terminal, else CSV. With -o only a terminal or --table gets anything. */
 enum show options_show(const struct options *options);
 
+/* options_end - the last of a command that makes one table: prints it as `all` says for JSON and readable text, or says
+ * what failed, and frees it. Returns the exit code. */
+int options_end(const struct options *options, enum status status, const struct error *error, struct csv_table *table,
+		report_readable *readable);
+
 /* options_usage - tells on standard error what is wrong with the command line. Returns EXIT_USAGE. */
 int options_usage(enum command command, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

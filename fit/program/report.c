@@ -142,8 +142,7 @@ void report_records(FILE *file, const struct csv_table *table)
 	}
 }
 
-void report_output(const struct csv_table *table, enum show show,
-		   void (*readable)(FILE *file, const struct csv_table *table))
+void report_output(const struct csv_table *table, enum show show, report_readable *readable)
 {
 	if (show == SHOW_JSON)
 		report_json(stdout, table);
@@ -224,8 +223,7 @@ void report_fits(FILE *file, const struct csv_table *results, bool heading)
 struct progress progress_start(size_t n, const char *unit, bool quiet)
 {
 	const double now = search_clock();
-	return (struct progress){
-		.shown = !quiet && n > 1 && isatty(STDERR_FILENO), .n = n, .unit = unit, .start = now};
+	return (struct progress){.shown = !quiet && n > 1 && isatty(STDERR_FILENO), .n = n, .unit = unit, .start = now};
 }
 
 void progress_draw(struct progress *progress)

@@ -18,9 +18,9 @@ void report_table(FILE *file, const struct csv_table *table);
 /* report_records - row by row, each cell on a line of its own behind its column's name: for few and long rows. */
 void report_records(FILE *file, const struct csv_table *table);
 /* report_output - the table on standard output; `readable` prints it if it is to be readable. */
+typedef void report_readable(FILE *file, const struct csv_table *table);
 enum show { SHOW_NOTHING, SHOW_CSV, SHOW_JSON, SHOW_READABLE };
-void report_output(const struct csv_table *table, enum show show,
-		   void (*readable)(FILE *file, const struct csv_table *table));
+void report_output(const struct csv_table *table, enum show show, report_readable *readable);
 
 /* report_fits - the fitted rows (of result.h) of one file; a heading too if asked for. */
 void report_fits(FILE *file, const struct csv_table *results, bool heading);
@@ -29,7 +29,7 @@ void report_fits(FILE *file, const struct csv_table *results, bool heading);
 struct progress {
 	bool shown; /* there is one: standard error is a terminal, and nobody asked for quiet */
 	size_t done, n;
-	const char *unit;     /* what they are, "files" */
+	const char *unit;    /* what they are, "files" */
 	double start, drawn; /* seconds; when the batch began, when the line was last drawn */
 };
 

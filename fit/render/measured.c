@@ -6,13 +6,13 @@
 
 static float *entry_at(const struct measured *m, int i, int j, int k)
 {
-	return m->value + SAMPLES_CHANNELS * ((size_t)k + (size_t)m->n_phi_d * (size_t)(j + SAMPLES_THETA_D * i));
+	return m->value + SAMPLES_CHANNELS * samples_at(m->n_phi_d, i, j, k);
 }
 
 static void fill_row(struct measured *m, const struct samples *samples, int i, int j)
 {
 	for (int k = 0; k < m->n_phi_d; k++) {
-		const size_t at = (size_t)k + (size_t)m->n_phi_d * (size_t)(j + SAMPLES_THETA_D * i);
+		const size_t at = samples_at(m->n_phi_d, i, j, k);
 		float *entry = entry_at(m, i, j, k);
 		if (!isnan(samples->value[0][at]))
 			for (int c = 0; c < SAMPLES_CHANNELS; c++)
