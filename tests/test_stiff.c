@@ -278,10 +278,10 @@ static struct fit_options options_of(const char *ndf)
 /* kd and ks are certified to 1e-7 of the optimum for their shape. */
 static const double rounding = 2e-7;
 
-/* What another search may end below this one: 0.1 %, and, where E is near 0, what a last step of 1e-5 in the shape makes. */
+/* What another search may end below this one: 0.01 %, and, where E is near 0, what a last step of 1e-5 in the shape makes. */
 static double search_end(double error)
 {
-	return 1e-3 * error + 2e-6;
+	return 1e-4 * error + 2e-6;
 }
 
 static double error_with(const struct samples *samples, const struct fit_options *options)
