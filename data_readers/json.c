@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "json.h"
+#include "text_file.h"
 #include "text_quote.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEPTH_MAX = 64, FILE_MAX = 64 << 20 };
+enum { DEPTH_MAX = 64, FILE_SIZE_MAX = 64 << 20 };
 
 struct parser {
 	const char *start, *at;
@@ -251,49 +251,13 @@ enum status json_parse(const char *text, struct json *json, struct error *error)
 	return status;
 }
 
-/* The bytes of a file as a string. */
-static enum status read_text(const char *path, char **text, struct error *error)
-{
-	FILE *file = fopen(path, "rb");
-	size_t length = 0, room = 0, got = 1;
-	char *read = NULL;
-	if (!file)
-		return error_set(error, STATUS_IO, "%s", strerror(errno));
-	for (; got && length < FILE_MAX; length += got) {
-		if (length + 1 >= room) {
-			char *more = realloc(read, room = room ? 2 * room : 4096);
-			if (!more) {
-				free(read);
-				fclose(file);
-				return error_set(error, STATUS_NO_MEMORY, "out of memory");
-			}
-			read = more;
-		}
-		got = fread(read + length, 1, room - length - 1, file);
-	}
-	const bool failed = ferror(file);
-	const int reason = errno;
-	fclose(file);
-	if (failed || length >= FILE_MAX) {
-		free(read);
-		return failed ? error_set(error, STATUS_IO, "%s", strerror(reason))
-			      : error_set(error, STATUS_FORMAT, "more than %d MB", FILE_MAX >> 20);
-	}
-	read[length] = '\0';
-	if (strlen(read) < length) {
-		free(read);
-		return error_set(error, STATUS_FORMAT, "expected text, found a null byte");
-	}
-	*text = read;
-	return STATUS_OK;
-}
-
 enum status json_read(const char *path, struct json *json, struct error *error)
 {
-	char *text = NULL, name[TEXT_QUOTE_SIZE];
+	char *text, name[TEXT_QUOTE_SIZE];
 	struct error why;
+	size_t size;
 	*json = (struct json){0};
-	enum status status = read_text(path, &text, &why);
+	enum status status = text_file_read(path, "a model", FILE_SIZE_MAX, &text, &size, &why);
 	if (!status)
 		status = json_parse(text, json, &why);
 	free(text);

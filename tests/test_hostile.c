@@ -258,6 +258,39 @@ static void tables_that_are_none(void **state)
 	expect_out("\na,0.5,ggx");
 }
 
+/* Commands that read a model, or what may be one; a hang ends after a minute, with 124. */
+static void models_that_are_none(void **state)
+{
+	(void)state;
+	shell("mkfifo pipe.json pipe.hdr; ln -s /dev/zero zero.json; truncate -s 1T terabyte.json; ln -s loop.json "
+	      "loop.json;"
+	      "mkdir directory.json; : >empty.json; printf '{\"ndf\": \\0}' >null.json");
+	static const char *const command[] = {"eval a.binary --from %s", "ndf --theta 10 --from %s", "sample --from %s",
+					      "export --format json --from %s -o new.json",
+					      "render a.binary --from %s -o new.png"};
+	static const char *const bad[] = {"pipe.json",  "zero.json",      "terabyte.json", "loop.json",
+					  "empty.json", "directory.json", "null.json",     "missing.json"};
+	for (size_t c = 0; c < sizeof command / sizeof *command; c++)
+		for (size_t b = 0; b < sizeof bad / sizeof *bad; b++) {
+			char arguments[128], whole[192];
+			snprintf(arguments, sizeof arguments, command[c], bad[b]);
+			snprintf(whole, sizeof whole, "exec timeout 60 \"$STDFIT\" %s", arguments);
+			shell(whole);
+			expect_error(1, bad[b]);
+		}
+	shell("exec timeout 60 \"$STDFIT\" plot pipe.csv -o pipe-plots");
+	expect_error(1, "'pipe.csv' line 1: expected a header");
+	shell("exec timeout 60 \"$STDFIT\" render a.binary --kd 1 -e pipe.hdr");
+	expect_error(1, "'pipe.hdr': expected a regular file");
+	assert_int_equal(access("new.json", F_OK), -1);
+	assert_int_equal(access("new.png", F_OK), -1);
+	/* A pipe that somebody writes to is a model like any other. */
+	shell("\"$STDFIT\" export --kd 1,0.5,0.25 --format json >model.json && ln -s /dev/fd/0 standard.json &&"
+	      "{ sleep 0.1; cat model.json; } | \"$STDFIT\" export --from standard.json --format json | cmp - "
+	      "model.json");
+	expect_code(0);
+}
+
 static void numbers_too_long_to_be_cut(void **state)
 {
 	(void)state;
@@ -405,6 +438,7 @@ int main(void)
 		cmocka_unit_test(ten_thousand_files),
 		cmocka_unit_test(names_of_any_bytes),
 		cmocka_unit_test(tables_that_are_none),
+		cmocka_unit_test(models_that_are_none),
 		cmocka_unit_test(numbers_too_long_to_be_cut),
 		cmocka_unit_test(outputs_in_the_place_of_inputs),
 		cmocka_unit_test(outputs_behind_links),

@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "csv.h"
+#include "text_file.h"
 #include "text_quote.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
 
 /* No result table comes near this; it keeps a wrong file from filling the memory. */
 enum { FILE_SIZE_MAX = 256 * 1024 * 1024 };
@@ -118,77 +115,19 @@ struct reader {
 	const char *path;
 	char name[TEXT_QUOTE_SIZE]; /* the path, for messages */
 	char *text, *at, *end;      /* the file, followed by a NUL; fields are cut out of it in place */
-	size_t text_capacity;
-	size_t line, next_line; /* of the record just read; of the one to come */
+	size_t line, next_line;     /* of the record just read; of the one to come */
 	char **field;
 	size_t n_fields, capacity;
 	bool terminated; /* the record just read ended with a newline */
 };
 
-/* Opens a file, or a pipe that somebody writes to: one that nobody writes to is empty, and not waited for. */
-static FILE *open_text(const char *path)
-{
-	const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-	if (fd < 0)
-		return NULL;
-	const int flags = fcntl(fd, F_GETFL);
-	FILE *file = flags >= 0 && !fcntl(fd, F_SETFL, flags & ~O_NONBLOCK) ? fdopen(fd, "rb") : NULL;
-	if (!file) {
-		const int errnum = errno;
-		close(fd);
-		errno = errnum;
-	}
-	return file;
-}
-
-static bool reader_reserve(struct reader *r, size_t size)
-{
-	if (size <= r->text_capacity)
-		return true;
-	const size_t capacity = r->text_capacity ? 2 * r->text_capacity : 65536;
-	char *text = realloc(r->text, capacity);
-	if (!text)
-		return false;
-	r->text = text;
-	r->text_capacity = capacity;
-	return true;
-}
-
-static enum status cannot_read(struct error *error, const struct reader *r, enum status status, const char *why)
-{
-	return error_set(error, status, "cannot read '%s': %s", r->name, why);
-}
-
-static enum status read_bytes(struct reader *r, FILE *file, size_t *size, struct error *error)
-{
-	size_t got;
-	do {
-		if (!reader_reserve(r, *size + 2))
-			return cannot_read(error, r, STATUS_NO_MEMORY, "out of memory");
-		char *to = r->text + *size;
-		got = fread(to, 1, r->text_capacity - *size - 1, file);
-		if (memchr(to, '\0', got))
-			return cannot_read(error, r, STATUS_FORMAT, "expected text, found a zero byte");
-		*size += got;
-	} while (got && *size <= FILE_SIZE_MAX);
-	if (ferror(file))
-		return cannot_read(error, r, STATUS_IO, strerror(errno));
-	if (*size > FILE_SIZE_MAX)
-		return cannot_read(error, r, STATUS_FORMAT, "too large for a result table");
-	return STATUS_OK;
-}
-
 static enum status read_text(struct reader *r, struct error *error)
 {
-	size_t size = 0;
-	FILE *file = open_text(r->path);
-	if (!file)
-		return cannot_read(error, r, errno == ENOMEM ? STATUS_NO_MEMORY : STATUS_IO, strerror(errno));
-	const enum status status = read_bytes(r, file, &size, error);
-	fclose(file);
+	size_t size;
+	struct error why;
+	const enum status status = text_file_read(r->path, "a result table", FILE_SIZE_MAX, &r->text, &size, &why);
 	if (status)
-		return status;
-	r->text[size] = '\0';
+		return error_set(error, status, "cannot read '%s': %.200s", r->name, why.text);
 	r->at = r->text;
 	r->end = r->text + size;
 	/* A byte order mark, as spreadsheets leave it. */

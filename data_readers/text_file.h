@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* text_file - the whole of a text, from a file or from a pipe that somebody writes to. */
+#ifndef TEXT_FILE_H
+#define TEXT_FILE_H
+
+#include "status.h"
+#include <stddef.h>
+
+/* text_file_read - the text of a file of at most `most` bytes, newly allocated, terminated, into *text, and its length into
+ * *size. A pipe that nobody writes to is empty, and not waited for.
+ * Errors, which do not name the file: STATUS_IO, STATUS_NO_MEMORY, STATUS_FORMAT (a zero byte; too large, `what` being
+ * what it should be, "a result table"); *text is NULL then. */
+MUST_CHECK enum status text_file_read(const char *path, const char *what, size_t most, char **text, size_t *size,
+				      struct error *why);
+
+#endif
