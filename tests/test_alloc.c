@@ -28,6 +28,7 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 
 /* The program's own main(), which is not in what tests are linked with. */
 int stdfit_main(int argc, char **argv);
@@ -167,13 +168,15 @@ int posix_memalign(void **memory, size_t alignment, size_t size)
 
 /* --- runs -------------------------------------------------------------------------------------------------------- */
 
+enum { OUTPUTS_MAX = 20 };
+
 struct scenario {
 	const char *name, *arguments;
-	const char *output; /* what it writes besides standard output; NULL: nothing */
-	const char *before; /* a file that is there before under that name; NULL: none */
-	bool binary;        /* the output is no text */
-	bool heavy;         /* it reads or writes a whole MERL file */
-	bool varies;        /* what it gives depends on time */
+	const char *output[OUTPUTS_MAX]; /* what it writes besides standard output */
+	const char *before;              /* a file that is there before under the first name; NULL: none */
+	bool binary;                     /* the output is a MERL file */
+	bool heavy;                      /* it reads or writes a whole MERL file */
+	bool varies;                     /* what it gives depends on time */
 };
 
 enum { ARGUMENTS_MAX = 32 };
@@ -207,9 +210,9 @@ static void prepare(const struct scenario *scenario)
 	char command[256];
 	snprintf(command, sizeof command,
 		 "rm -rf run; mkdir run run/d run/d/e; ln a.binary run/a.binary; ln a.binary run/d/e/b.binary;"
-		 "cp table.csv shard.csv run; %s%s%s%s",
+		 "cp table.csv two.csv shard.csv model.json trace.csv map.pfm run; %s%s%s%s",
 		 scenario->before ? "cp " : "", scenario->before ? scenario->before : "",
-		 scenario->before ? " run/" : "", scenario->before ? scenario->output : "");
+		 scenario->before ? " run/" : "", scenario->before ? scenario->output[0] : "");
 	assert_int_equal(end(start(command)), 0);
 }
 
@@ -235,6 +238,18 @@ static bool is_result_table(const char *text)
 	return !strncmp(text, "material,ndf,error,kd_r", strlen("material,ndf,error,kd_r"));
 }
 
+/* What a file holds as a string, although there may be zero bytes in it. */
+static char *slurp_bytes(const char *path)
+{
+	struct stat info;
+	char *text = slurp(path);
+	assert_int_equal(stat(path, &info), 0);
+	for (off_t i = 0; i < info.st_size; i++)
+		if (!text[i])
+			text[i] = '\1';
+	return text;
+}
+
 /* What a file holds, without seconds; NULL if it is not there. */
 static char *content(const char *path, bool binary)
 {
@@ -249,7 +264,7 @@ static char *content(const char *path, bool binary)
 		samples_free(&samples);
 		return strdup(text);
 	}
-	char *text = slurp(path);
+	char *text = slurp_bytes(path);
 	/* In JSON the number is cut out where it stands. */
 	static const char name[] = "\"seconds\": ";
 	for (char *at = text; (at = strstr(at, name));) {
@@ -280,21 +295,33 @@ static void check_rows(const char *left, const char *whole, const char *before)
 	free(copy);
 }
 
-/* What a run that failed may leave of its output: nothing, what was there, or rows of the whole. */
-static void check_output(const struct scenario *scenario, const char *whole)
+static bool ends_with(const char *text, const char *end)
+{
+	const size_t length = strlen(text), n = strlen(end);
+	return length >= n && !strcmp(text + length - n, end);
+}
+
+/* Output that says itself what it lacks. */
+static bool tells(const char *text)
+{
+	return (json_is_valid(text) && strstr(text, "\"failed: ")) ||
+	       (ends_with(text, "</html>\n") && strstr(text, "<p>Pictures are missing: "));
+}
+
+/* What a run that failed may leave of an output: nothing, what was there, or rows of the whole. */
+static void check_output(const char *name, const char *before_path, bool binary, const char *whole)
 {
 	char path[64], back_path[64];
-	snprintf(path, sizeof path, "run/%s", scenario->output);
-	snprintf(back_path, sizeof back_path, "run/%s~", scenario->output);
-	char *before = scenario->before ? content(scenario->before, scenario->binary) : NULL;
-	char *left = content(path, scenario->binary), *back = content(back_path, scenario->binary);
+	snprintf(path, sizeof path, "run/%s", name);
+	snprintf(back_path, sizeof back_path, "run/%s~", name);
+	char *before = before_path ? content(before_path, binary) : NULL;
+	char *left = content(path, binary), *back = content(back_path, binary);
 	if (left && !same(left, before) && !same(left, whole)) {
-		char *text = scenario->binary ? strdup("") : slurp(path);
-		const bool tells = json_is_valid(text) && strstr(text, "\"failed: ");
+		char *text = binary ? strdup("") : slurp(path);
 		const bool table = is_result_table(text);
-		free(text);
-		if (!table && !tells)
+		if (!table && !tells(text))
 			fail_msg("%s is neither whole nor as it was: %.300s", path, left);
+		free(text);
 		if (table)
 			check_rows(left, whole, before);
 	}
@@ -321,34 +348,58 @@ static void check_messages(const char *text)
 }
 
 struct outcome {
-	char *out, *output;
+	char *out, *output[OUTPUTS_MAX];
 };
+
+static struct outcome outcome_read(const struct scenario *scenario)
+{
+	struct outcome outcome = {.out = content("out", false)};
+	for (int i = 0; i < OUTPUTS_MAX && scenario->output[i]; i++) {
+		char path[64];
+		snprintf(path, sizeof path, "run/%s", scenario->output[i]);
+		outcome.output[i] = content(path, scenario->binary);
+	}
+	return outcome;
+}
+
+static void outcome_free(struct outcome *outcome)
+{
+	free(outcome->out);
+	for (int i = 0; i < OUTPUTS_MAX; i++)
+		free(outcome->output[i]);
+}
+
+static void check_success(const struct scenario *scenario, const struct outcome *whole, const char *when)
+{
+	struct outcome outcome = outcome_read(scenario);
+	if (!same(outcome.out, whole->out))
+		fail_msg("%s: exit code 0, but not the same on standard output: %.600s", when, outcome.out);
+	for (int i = 0; i < OUTPUTS_MAX; i++)
+		if (!same(outcome.output[i], whole->output[i]))
+			fail_msg("%s: exit code 0, but %s is not the same: %.600s", when, scenario->output[i],
+				 outcome.output[i]);
+	outcome_free(&outcome);
+}
 
 /* One run with a failure; what went wrong is told with the scenario and the number of the allocation. */
 static void check_failure(const struct scenario *scenario, const struct outcome *whole, long n, bool all_after)
 {
 	const int code = run(scenario, n, all_after);
-	char path[64], *err = slurp("err");
-
+	char when[128], *err = slurp("err");
+	snprintf(when, sizeof when, "%s, allocation %ld%s", scenario->name, n, all_after ? " and all later ones" : "");
 	if (code != EXIT_DONE && code != EXIT_FAILED)
-		fail_msg("%s, allocation %ld%s: exit code %d; standard error: %s", scenario->name, n,
-			 all_after ? " and all later ones" : "", code, err);
-	snprintf(path, sizeof path, "run/%s", scenario->output ? scenario->output : "");
-	if (code == EXIT_DONE) {
-		char *out = content("out", false), *output = scenario->output ? content(path, scenario->binary) : NULL;
-		if (!scenario->varies && (!same(out, whole->out) || !same(output, whole->output)))
-			fail_msg("%s, allocation %ld%s: exit code 0, but not the same output: %.600s", scenario->name,
-				 n, all_after ? " and all later ones" : "", output ? output : out);
-		free(output);
-		free(out);
-	} else {
-		printf("%s, allocation %ld%s\n", scenario->name, n, all_after ? " and all later ones" : "");
+		fail_msg("%s: exit code %d; standard error: %s", when, code, err);
+	if (code == EXIT_DONE && !scenario->varies)
+		check_success(scenario, whole, when);
+	if (code == EXIT_FAILED) {
+		printf("%s\n", when);
 		check_messages(err);
-		if (scenario->output)
-			check_output(scenario, whole->output);
+		for (int i = 0; i < OUTPUTS_MAX && scenario->output[i]; i++)
+			check_output(scenario->output[i], i ? NULL : scenario->before, scenario->binary,
+				     whole->output[i]);
 	}
 	free(err);
-	shell("find run -name '.stdfit-*'");
+	shell("find run -name '.stdfit-*' -o -name '*.stdfit-*'");
 	assert_string_equal(last.out, "");
 }
 
@@ -361,12 +412,14 @@ static long tries(const struct scenario *scenario)
 
 static void check_scenario(const struct scenario *scenario)
 {
-	char path[64];
-	snprintf(path, sizeof path, "run/%s", scenario->output ? scenario->output : "");
-	assert_int_equal(run(scenario, 0, false), EXIT_DONE);
+	if (run(scenario, 0, false) != EXIT_DONE)
+		fail_msg("%s: %s", scenario->name, slurp("err"));
 	const long total = control->count, most = tries(scenario);
 	const long first = most < total ? most : total, others = most < total - first ? most : total - first;
-	struct outcome whole = {content("out", false), scenario->output ? content(path, scenario->binary) : NULL};
+	struct outcome whole = outcome_read(scenario);
+	for (int i = 0; i < OUTPUTS_MAX && scenario->output[i]; i++)
+		if (!whole.output[i])
+			fail_msg("%s: there is no %s", scenario->name, scenario->output[i]);
 	for (long n = 1; n <= first; n++)
 		check_failure(scenario, &whole, n, n % 2);
 	for (long i = 0; i < others; i++)
@@ -375,10 +428,12 @@ static void check_scenario(const struct scenario *scenario)
 	for (long n = 1; n <= first && most > 50; n++)
 		check_failure(scenario, &whole, n, n % 2 == 0);
 	printf("%s: %ld allocations, %ld tried\n", scenario->name, total, first + others);
-	free(whole.out);
-	free(whole.output);
+	outcome_free(&whole);
 }
 
+#define MODEL "--kd 0.3 --ks 0.5 --ndf std --gamma 2.5 --sigma 0.2"
+#define DRAWN(name) name ".csv", name ".gp", name ".png", name ".svg"
+#define QUICK "--threads 1 --size 16 --samples 1"
 #define CHEAP "--threads 1 --ndf ggx --sigma 0.2 --ior 1.5 --max-theta 5"
 
 static const struct scenario scenarios[] = {
@@ -386,16 +441,31 @@ static const struct scenario scenarios[] = {
 	{.name = "help", .arguments = "fit --help"},
 	{.name = "compare a table",
 	 .arguments = "compare table.csv -o summary.csv",
-	 .output = "summary.csv",
+	 .output = {"summary.csv"},
 	 .before = "old.csv"},
 	{.name = "compare as JSON", .arguments = "compare table.csv --json"},
-	{.name = "merge", .arguments = "merge table.csv shard.csv -o merged.csv", .output = "merged.csv"},
-	{.name = "export",
-	 .arguments = "export --kd 0.3 --ks 0.5 --ndf std --gamma 2.5 --sigma 0.2 --format json -o model.json",
-	 .output = "model.json"},
+	{.name = "merge", .arguments = "merge table.csv shard.csv -o merged.csv", .output = {"merged.csv"}},
+	{.name = "export", .arguments = "export " MODEL " --format json -o new.json", .output = {"new.json"}},
+	{.name = "export of JSON",
+	 .arguments = "export --from model.json --format json -o new.json",
+	 .output = {"new.json"}},
+	{.name = "export to mitsuba",
+	 .arguments = "export --kd 0.3 --ks 0.5 --ndf ggx --sigma 0.2 --format mitsuba -o new.xml",
+	 .output = {"new.xml"}},
+	{.name = "export to pbrt, on standard output",
+	 .arguments = "export --kd 0.3 --ks 0.5 --ndf ggx --sigma 0.2 --gaf correlated --format pbrt"},
+	{.name = "export of a stand-in",
+	 .arguments = "export --threads 1 --from table.csv --row 1 --format pbrt -o new.pbrt",
+	 .output = {"new.pbrt"},
+	 .heavy = true},
+	{.name = "export to merl",
+	 .arguments = "export --from table.csv --row 1 --format merl -o new.binary",
+	 .output = {"new.binary"},
+	 .binary = true,
+	 .heavy = true},
 	{.name = "export a row",
 	 .arguments = "export --from table.csv --row 1 --format brdf -o a.brdf",
-	 .output = "a.brdf"},
+	 .output = {"a.brdf"}},
 	{.name = "ndf", .arguments = "ndf std --sigma 0.3 --gamma 2.5 --theta 0:90:15 --json"},
 	{.name = "ndf of a row", .arguments = "ndf --from table.csv --row 1 --theta 10,20"},
 	{.name = "sample", .arguments = "sample ggx --sigma 0.3 --count 10"},
@@ -406,26 +476,61 @@ static const struct scenario scenarios[] = {
 	{.name = "eval --from", .arguments = "eval a.binary --threads 1 --from table.csv", .heavy = true},
 	{.name = "synth",
 	 .arguments = "synth new.binary --threads 1 --kd 0.4 --noise 0.1",
-	 .output = "new.binary",
+	 .output = {"new.binary"},
 	 .binary = true,
+	 .heavy = true},
+	{.name = "render",
+	 .arguments = "render a.binary --from model.json " QUICK " --difference -o new.png",
+	 .output = {"new.png"},
+	 .before = "table.csv",
+	 .heavy = true},
+	{.name = "render a table",
+	 .arguments = "render two.csv " QUICK " --json -o new.pfm",
+	 .output = {"new.pfm"},
+	 .heavy = true},
+	{.name = "render a fit", .arguments = "render a.binary " CHEAP " " QUICK, .heavy = true},
+	{.name = "render in the light of a map",
+	 .arguments = "render a.binary " MODEL " " QUICK " -e map.pfm --light 0,1,1;1,0,1,2",
+	 .heavy = true},
+	{.name = "compare --pictures",
+	 .arguments = "compare two.csv --pictures --threads 1 -o new.csv",
+	 .output = {"new.csv"},
+	 .heavy = true},
+	{.name = "plot",
+	 .arguments = "plot two.csv --threads 1 -o plots",
+	 .output = {DRAWN("plots/errors"), "plots/a/ndf_D.csv", "plots/a/ndf_G1.csv", "plots/a/ndf.gp",
+		    "plots/a/ndf.svg", DRAWN("plots/a/map"), DRAWN("plots/a/slices")},
+	 .heavy = true},
+	{.name = "plot a fit",
+	 .arguments = "plot a.binary " CHEAP " -o plots",
+	 .output = {"plots/fits.csv", DRAWN("plots/a/map")},
+	 .heavy = true},
+	{.name = "plot a trace", .arguments = "plot trace.csv -o plots", .output = {DRAWN("plots/trace")}},
+	{.name = "report",
+	 .arguments = "report two.csv " QUICK " -o page",
+	 .output = {"page/index.html"},
+	 .heavy = true},
+	{.name = "report of a fit",
+	 .arguments = "report a.binary " CHEAP " " QUICK " -o page",
+	 .output = {"page/index.html", "page/fits.csv"},
 	 .heavy = true},
 	{.name = "fit a directory",
 	 .arguments = "-r . " CHEAP " -o new.csv",
-	 .output = "new.csv",
+	 .output = {"new.csv"},
 	 .before = "old.csv",
 	 .heavy = true},
 	{.name = "fit --resume",
 	 .arguments = "a.binary d/e/b.binary " CHEAP " --resume -o new.csv",
-	 .output = "new.csv",
+	 .output = {"new.csv"},
 	 .before = "half.csv",
 	 .heavy = true},
 	{.name = "fit --json",
 	 .arguments = "a.binary --threads 1 --ndf std,ggx --max-theta 5 --no-specular --json -o new.json",
-	 .output = "new.json",
+	 .output = {"new.json"},
 	 .heavy = true},
 	{.name = "fit --trace",
 	 .arguments = "a.binary " CHEAP " --trace trace.csv -o new.csv",
-	 .output = "new.csv",
+	 .output = {"new.csv"},
 	 .heavy = true},
 	{.name = "fit --within", .arguments = "a.binary " CHEAP " --within 1%", .heavy = true},
 	{.name = "fit in two threads", .arguments = "a.binary d/e/b.binary " CHEAP " --threads 2", .heavy = true},
@@ -460,6 +565,34 @@ static bool is_wanted(const struct scenario *scenario)
 	return !name || !strcmp(name, scenario->name);
 }
 
+/* What stands for gnuplot, whose allocations are its own: each picture is the script and the data. */
+static const char gnuplot[] = "#!/bin/sh\n"
+			      "part=${3#*\\'}\n"
+			      "part=${part%\\'}\n"
+			      "shift 3\n"
+			      "for script; do\n"
+			      "\tname=${script%.gp}\n"
+			      "\t{ cat $script $name*.csv; printf 'IEND\\256B`\\202'; } >$name.png$part || exit\n"
+			      "\t{ cat $script $name*.csv; echo '</svg>'; } >$name.svg$part || exit\n"
+			      "done\n";
+
+/* Further files that scenarios read. */
+static void make_files(void)
+{
+	char *path;
+	assert_true(asprintf(&path, "%s/bin:%s", test_directory, getenv("PATH")) > 0);
+	assert_int_equal(setenv("PATH", path, 1), 0);
+	free(path);
+	shell("mkdir -p bin");
+	write_text("bin/gnuplot", gnuplot);
+	shell("chmod +x bin/gnuplot && \"$STDFIT\" export " MODEL " --format json -o model.json"
+	      " && { cat table.csv; tail -n +2 shard.csv | sed s/b[.]bin/d.e.b.bin/ | sed s,d.e.b.bin,d/e/b.bin,; } "
+	      ">two.csv"
+	      " && \"$STDFIT\" a.binary " CHEAP " --trace trace.csv -o traced.csv"
+	      " && { printf 'PF\\n8 4\\n-1\\n'; head -c $((8 * 4 * 12)) /dev/zero | tr '\\0' '?'; } >map.pfm");
+	expect_code(0);
+}
+
 static void light(void **state)
 {
 	(void)state;
@@ -467,6 +600,7 @@ static void light(void **state)
 		print_message("ThreadSanitizer lets no other malloc() be\n");
 		skip();
 	}
+	make_files();
 	for (size_t i = 0; i < sizeof scenarios / sizeof *scenarios; i++)
 		if (!scenarios[i].heavy && is_wanted(&scenarios[i]))
 			check_scenario(&scenarios[i]);
@@ -477,6 +611,7 @@ static void heavy(void **state)
 	(void)state;
 	if (!OWN_ALLOCATOR)
 		skip();
+	make_files();
 	for (size_t i = 0; i < sizeof scenarios / sizeof *scenarios; i++)
 		if (scenarios[i].heavy && is_wanted(&scenarios[i]))
 			check_scenario(&scenarios[i]);

@@ -36,20 +36,23 @@ static bool is_input(const struct source_model *model, const struct samples *sam
 }
 
 /* Reads the measurement where the export has use for it: the FILE given, or the one that the row is of, if that is there
- * and still the same. Else it does without; the export tells what its errors are against. Returns the path, or NULL. */
-static const char *find_samples(const struct options *options, const struct source_model *model,
-				struct samples *samples)
+ * and still the same. Else it does without; the export tells what its errors are against. *found is its path, or NULL.
+ * Fails only when out of memory: that says nothing about the file. */
+static enum status find_samples(const struct options *options, const struct source_model *model,
+				struct samples *samples, const char **found, struct error *error)
 {
 	const char *path = options->n_paths ? options->path[0] : model->path;
-	if (samples->value[0])
-		return path;
-	if (!path || !export_wants_samples(options->format, &model->model) ||
-	    merl_read(path, options->fit.threads, samples, NULL))
-		return NULL;
+	*found = samples->value[0] ? path : NULL;
+	if (*found || !path || !export_wants_samples(options->format, &model->model))
+		return STATUS_OK;
+	const enum status status = merl_read(path, options->fit.threads, samples, error);
+	if (status)
+		return status == STATUS_NO_MEMORY ? status : STATUS_OK;
 	if (options->n_paths || is_input(model, samples))
-		return path;
-	samples_free(samples);
-	return NULL;
+		*found = path;
+	else
+		samples_free(samples);
+	return STATUS_OK;
 }
 
 static enum status write_merl(const struct export *export, const char *path, struct error *error)
@@ -104,7 +107,10 @@ static enum status write_text(const struct export *export, const char *path, str
 static enum status write_model(const struct options *options, const struct source_model *model, struct samples *samples,
 			       struct error *error)
 {
-	const char *measured = find_samples(options, model, samples);
+	const char *measured;
+	enum status status = find_samples(options, model, samples, &measured, error);
+	if (status)
+		return status;
 	const struct export_source source = {.model = &model->model,
 					     .fit = &model->fit,
 					     .error = model->error,
@@ -113,7 +119,7 @@ static enum status write_model(const struct options *options, const struct sourc
 					     .samples = measured ? samples : NULL};
 	struct export export;
 	struct error why;
-	enum status status = export_prepare(&export, options->format, &source, &why);
+	status = export_prepare(&export, options->format, &source, &why);
 	if (status)
 		return error_set(error, status, "cannot export to %s: %.400s", export_format_name(options->format),
 				 why.text);

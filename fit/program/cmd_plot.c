@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit plot - fits, and the course of searches, as pictures by gnuplot. */
-#include "files.h"
 #include "gnuplot.h"
 #include "output_directory.h"
 #include "plot_files.h"
+#include "regular_file.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 struct plotting {
 	const struct options *options;
@@ -40,6 +41,9 @@ static void plot_one(struct plotting *p, const struct material *material)
 	enum status status = material_read(material, p->options->fit.threads, &data, &error);
 	if (!status)
 		status = output_directory_make(p->options->output, material->file_name, &directory, &error);
+	for (int i = 0; i < PLOT_MATERIAL_TABLES && !status; i++)
+		status = output_directory_spares(directory, plot_material_tables[i], p->options->path,
+						 p->options->n_paths, &error);
 	if (!status)
 		status = plot_material(directory, &data, &error);
 	if (!status)
@@ -68,16 +72,20 @@ static void plot_all(struct plotting *p, const struct materials *materials)
 	progress_erase(&p->progress);
 }
 
-/* Whether the file begins as a trace does. */
+/* Whether the file begins as a trace does. What a pipe begins with is gone once it is read. */
 static bool is_trace(const char *path)
 {
-	char line[256] = "";
-	FILE *file = fopen(path, "r");
-	if (!file)
-		return false;
-	const bool read = fgets(line, sizeof line, file) != NULL;
-	fclose(file);
-	return read && strstr(line, "algorithm,stage,");
+	char line[256];
+	struct stat st;
+	int fd;
+	ssize_t n = 0;
+	if (!regular_file_open(path, "a trace", &fd, &st, NULL))
+		n = read(fd, line, sizeof line - 1);
+	if (fd >= 0)
+		close(fd);
+	line[n > 0 ? n : 0] = '\0';
+	line[strcspn(line, "\n")] = '\0';
+	return strstr(line, "algorithm,stage,");
 }
 
 static void plot_the_trace(struct plotting *p)
@@ -105,24 +113,6 @@ static void plot_the_fits(struct plotting *p)
 	p->code = code != EXIT_DONE ? code : p->code;
 }
 
-/* A file of its own that the command would write in the place of one that it is to read; NULL: there is none. */
-static const char *replaced_input(const struct options *options)
-{
-	static const char *const name[] = {"trace.csv", "errors.csv"};
-	for (size_t n = 0; n < sizeof name / sizeof *name; n++) {
-		char *path;
-		if (asprintf(&path, "%s/%s", options->output, name[n]) < 0)
-			return name[n];
-		bool same = false;
-		for (int i = 0; i < options->n_paths; i++)
-			same |= files_same(options->path[i], path);
-		free(path);
-		if (same)
-			return name[n];
-	}
-	return NULL;
-}
-
 int cmd_plot(int argc, char **argv, atomic_bool *cancel)
 {
 	struct options options;
@@ -132,13 +122,15 @@ int cmd_plot(int argc, char **argv, atomic_bool *cancel)
 		code = options_check_fit(&options);
 	if (code < 0 && !options.output)
 		code = options_usage(COMMAND_PLOT, "expected -o DIR, a directory for the plots");
-	const char *replaced = code < 0 ? replaced_input(&options) : NULL;
-	if (replaced)
-		code = options_usage(COMMAND_PLOT, "expected another directory: %s in this one is to be read",
-				     replaced);
 	if (code >= 0)
 		return code;
-	if (output_directory_make(options.output, NULL, NULL, &error)) {
+	static const char *const written[] = {"trace.csv", "errors.csv"};
+	enum status status = output_directory_make(options.output, NULL, NULL, &error);
+	for (size_t i = 0; i < sizeof written / sizeof *written && !status; i++)
+		status = output_directory_spares(options.output, written[i], options.path, options.n_paths, &error);
+	if (status == STATUS_DOMAIN)
+		return options_usage(COMMAND_PLOT, "%s", error.text);
+	if (status) {
 		report_error("%s", error.text);
 		return EXIT_FAILED;
 	}

@@ -18,7 +18,7 @@ enum picture { PICTURE_SPHERES, PICTURE_SLICES, PICTURE_MAP, PICTURE_NDF, PICTUR
 struct report {
 	const struct options *options;
 	struct progress progress;
-	char *scratch; /* where pictures are made */
+	struct scratch scratch; /* where pictures are made */
 	int code;
 	struct environment environment;
 	bool no_gnuplot, no_png; /* told already; why, below */
@@ -39,7 +39,7 @@ static bool draw(struct report *r, const char *const *name, int n, struct error 
 		*error = r->missing;
 		return false;
 	}
-	const enum status status = gnuplot_draw(r->scratch, name, n, r->options->cancel, error);
+	const enum status status = gnuplot_draw(r->scratch.path, name, n, r->options->cancel, error);
 	if (status == STATUS_UNSUPPORTED) {
 		progress_erase(&r->progress);
 		report_error("%s: the page has no plots", error->text);
@@ -51,11 +51,14 @@ static bool draw(struct report *r, const char *const *name, int n, struct error 
 	return status == STATUS_OK;
 }
 
-/* NAME in the scratch directory; NULL, which the page takes for no picture, when out of memory. */
-static char *scratch_path(const struct report *r, const char *name)
+/* NAME in the scratch directory; NULL, which the page takes for no picture, when out of memory, which `why` tells. */
+static char *scratch_path(const struct report *r, const char *name, struct error *why)
 {
 	char *path;
-	return asprintf(&path, "%s/%s", r->scratch, name) < 0 ? NULL : path;
+	if (asprintf(&path, "%s/%s", r->scratch.path, name) >= 0)
+		return path;
+	error_set(why, STATUS_NO_MEMORY, "out of memory");
+	return NULL;
 }
 
 static enum status begin(struct report *r, struct page *page, FILE *file, const struct materials *materials,
@@ -69,11 +72,14 @@ static enum status begin(struct report *r, struct page *page, FILE *file, const 
 		.caption = "Errors of all materials, sorted.",
 	};
 	struct error why;
-	const enum status status = plot_errors(r->scratch, materials, &why);
+	const enum status status = plot_errors(r->scratch.path, materials, &why);
 	if (status && status != STATUS_NO_DATA)
 		tell(r, &why);
-	if (!status && materials->n > 1 && draw(r, name, 1, &why))
-		errors.path = scratch_path(r, "errors.svg");
+	if (!status && materials->n > 1 && draw(r, name, 1, &why)) {
+		errors.path = scratch_path(r, "errors.svg", &why);
+		if (!errors.path)
+			tell(r, &why);
+	}
 	const enum status begun = page_begin(page, file, materials, &errors, error);
 	free(errors.path);
 	return begun;
@@ -95,8 +101,11 @@ static char *spheres_caption(const struct material_data *data, const struct pict
 		fprintf(file, "%s %s %.2f, %.4f", f ? ";" : "", data->fit[f].ndf, difference[f].delta_e,
 			difference[f].ssim);
 	fputs(".", file);
-	fclose(file);
-	return text;
+	const bool failed = ferror(file);
+	if (!fclose(file) && !failed)
+		return text;
+	free(text);
+	return NULL;
 }
 
 /* Without libpng the page does without spheres, which is told once. */
@@ -104,18 +113,20 @@ static bool draw_spheres(struct report *r, const struct material_data *data, str
 			 char **caption, struct error *why)
 {
 	struct picture_error difference[FIT_NDFS_MAX] = {{.rmse = 0}};
-	char *path = r->no_png ? NULL : scratch_path(r, "spheres.png");
-	enum status status = STATUS_UNSUPPORTED;
+	char *path = r->no_png ? NULL : scratch_path(r, "spheres.png", why);
+	enum status status = r->no_png ? STATUS_UNSUPPORTED : STATUS_NO_MEMORY;
 	if (r->no_png)
 		*why = r->missing_png;
 	else if (path)
 		status = report_spheres(path, data, &r->environment, r->options, difference, why);
-	else
-		status = error_set(why, STATUS_NO_MEMORY, "out of memory");
+	if (!status) {
+		*caption = spheres_caption(data, difference);
+		if (!*caption)
+			status = error_set(why, STATUS_NO_MEMORY, "out of memory");
+	}
 	if (!status) {
 		picture->path = path;
-		*caption = spheres_caption(data, difference);
-		picture->caption = *caption ? *caption : "Spheres.";
+		picture->caption = *caption;
 		return true;
 	}
 	free(path);
@@ -135,15 +146,20 @@ static bool draw_plots(struct report *r, const struct material_data *data, struc
 {
 	static const char *const name[PICTURES] = {
 		[PICTURE_SLICES] = "slices.svg", [PICTURE_MAP] = "map.png", [PICTURE_NDF] = "ndf.svg"};
-	if (plot_material(r->scratch, data, why)) {
+	if (plot_material(r->scratch.path, data, why)) {
 		tell(r, why);
 		return false;
 	}
 	if (!draw(r, plot_material_names, PLOT_MATERIAL_PICTURES, why))
 		return false;
-	for (int p = PICTURE_SLICES; p < PICTURES; p++)
-		picture[p].path = scratch_path(r, name[p]);
-	return true;
+	bool all = true;
+	for (int p = PICTURE_SLICES; p < PICTURES; p++) {
+		picture[p].path = scratch_path(r, name[p], why);
+		all &= picture[p].path != NULL;
+	}
+	if (!all)
+		tell(r, why);
+	return all;
 }
 
 /* Draws the pictures of a material; the paths of those that are there go to picture[]. Returns whether all are. */
@@ -236,7 +252,7 @@ static enum status make_page(struct report *r, const struct materials *materials
 	status = scratch_make(r->options->output, &r->scratch, error);
 	if (!status)
 		status = write_page(r, file.stream, materials, error);
-	scratch_remove(r->scratch);
+	scratch_remove(&r->scratch);
 	if (!status)
 		return atomic_file_commit(&file, error);
 	atomic_file_abort(&file);
@@ -254,7 +270,12 @@ int cmd_report(int argc, char **argv, atomic_bool *cancel)
 		code = options_usage(COMMAND_REPORT, "expected -o DIR, a directory for the page");
 	if (code >= 0)
 		return code;
-	if (output_directory_make(options.output, NULL, NULL, &error)) {
+	enum status status = output_directory_make(options.output, NULL, NULL, &error);
+	if (!status)
+		status = output_directory_spares(options.output, "index.html", options.path, options.n_paths, &error);
+	if (status == STATUS_DOMAIN)
+		return options_usage(COMMAND_REPORT, "%s", error.text);
+	if (status) {
 		report_error("%s", error.text);
 		return EXIT_FAILED;
 	}
@@ -265,7 +286,6 @@ int cmd_report(int argc, char **argv, atomic_bool *cancel)
 		return EXIT_FAILED;
 	}
 	code = materials_collect(&materials, &options);
-	enum status status = STATUS_OK;
 	if (materials.n && code != EXIT_INTERRUPTED)
 		status = make_page(&report, &materials, &error);
 	if (status && status != STATUS_INTERRUPTED) {

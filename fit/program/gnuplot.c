@@ -3,11 +3,13 @@
 #include "text_quote.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -118,32 +120,48 @@ static enum status run(const char *directory, char *const *argument, FILE *said,
 	return error_set(error, STATUS_IO, "gnuplot cannot draw in '%.120s': %s", where, words);
 }
 
-/* DIRECTORY/NAME.FORMAT, and the same with `part` behind it; NULL when out of memory. */
-static char *picture_path(const char *directory, const char *name, const char *format, const char *part)
+static enum status cannot_write(const char *directory, const char *picture, const char *why, struct error *error)
 {
-	char *path;
-	return asprintf(&path, "%s/%s.%s%s", directory, name, format, part) < 0 ? NULL : path;
+	char shown[TEXT_QUOTE_SIZE];
+	text_quote(directory, shown, sizeof shown);
+	return error_set(error, STATUS_IO, "cannot write '%s/%s': %s", shown, picture, why);
 }
 
-/* Puts a picture in its place, or drops it. */
-static enum status settle(const char *directory, const char *name, const char *format, const char *part, bool keep,
-			  struct error *error)
+/* Whether a picture has its end: gnuplot does not look whether it could write all of it. NULL, or why not. */
+static const char *check_end(int fd)
 {
-	char *path = picture_path(directory, name, format, ""), *temp = picture_path(directory, name, format, part);
-	enum status status = STATUS_OK;
-	if (!path || !temp) {
-		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
-	} else if (keep && rename(temp, path)) {
-		char shown[TEXT_QUOTE_SIZE];
-		const int errnum = errno;
-		text_quote(path, shown, sizeof shown);
-		status = error_set(error, STATUS_IO, "cannot write '%s': %s", shown, strerror(errnum));
+	static const char *const end[] = {"IEND\xae\x42\x60\x82", "</svg>\n\n", "</svg>\n"};
+	char tail[16] = "";
+	struct stat st;
+	if (fstat(fd, &st) || fsync(fd))
+		return strerror(errno);
+	const off_t n = st.st_size < (off_t)sizeof tail ? st.st_size : (off_t)sizeof tail;
+	const bool read = pread(fd, tail, (size_t)n, st.st_size - n) == n;
+	for (size_t e = 0; e < sizeof end / sizeof *end && read; e++) {
+		const size_t length = strlen(end[e]);
+		if ((size_t)n >= length && !memcmp(tail + (size_t)n - length, end[e], length))
+			return NULL;
 	}
-	if (temp && (!keep || status))
-		unlink(temp);
-	free(temp);
-	free(path);
-	return status;
+	return "gnuplot has not written it as a whole";
+}
+
+/* Puts a picture in its place, or drops it; without an allocation, so that nothing is left in any case. at: the directory,
+ * open. */
+static enum status settle(int at, const char *directory, const char *name, const char *format, const char *part,
+			  bool keep, struct error *error)
+{
+	char picture[NAME_SIZE + 8], temp[2 * NAME_SIZE + 8];
+	snprintf(picture, sizeof picture, "%s.%s", name, format);
+	snprintf(temp, sizeof temp, "%s%s", picture, part);
+	const int fd = keep ? openat(at, temp, O_RDONLY | O_CLOEXEC) : -1;
+	const char *why = !keep ? NULL : fd < 0 ? strerror(errno) : check_end(fd);
+	if (fd >= 0)
+		close(fd);
+	if (keep && !why && renameat(at, temp, at, picture))
+		why = strerror(errno);
+	if (!keep || why)
+		unlinkat(at, temp, 0);
+	return why ? cannot_write(directory, picture, why, error) : STATUS_OK;
 }
 
 enum status gnuplot_draw(const char *directory, const char *const *name, int n, const atomic_bool *cancel,
@@ -160,17 +178,20 @@ enum status gnuplot_draw(const char *directory, const char *const *name, int n, 
 		snprintf(script[i], NAME_SIZE, "%s.gp", name[i]);
 		argument[4 + i] = script[i];
 	}
-	FILE *said = tmpfile();
-	if (!said)
-		return error_set(error, STATUS_IO, "cannot make a temporary file: %s", strerror(errno));
-	enum status status = run(directory, argument, said, cancel, error);
-	fclose(said);
+	const int at = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	FILE *said = at < 0 ? NULL : tmpfile();
+	enum status status = said ? run(directory, argument, said, cancel, error)
+				  : error_set(error, STATUS_IO, "cannot run gnuplot: %s", strerror(errno));
 	const bool drawn = !status;
-	for (int i = 0; i < n; i++)
+	for (int i = 0; i < n && said; i++)
 		for (int f = 0; f < FORMATS; f++) {
-			const enum status settled =
-				settle(directory, name[i], formats[f], part, drawn, drawn && !status ? error : NULL);
+			const enum status settled = settle(at, directory, name[i], formats[f], part, drawn,
+							   drawn && !status ? error : NULL);
 			status = status ? status : settled;
 		}
+	if (said)
+		fclose(said);
+	if (at >= 0)
+		close(at);
 	return status;
 }

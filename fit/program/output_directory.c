@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "output_directory.h"
+#include "files.h"
 #include "text_quote.h"
 
-#include <dirent.h>
 #include <errno.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,31 +43,50 @@ enum status output_directory_make(const char *path, const char *below, char **ma
 		      : STATUS_OK;
 }
 
-enum status scratch_make(const char *path, char **scratch, struct error *error)
+enum status output_directory_spares(const char *directory, const char *name, char *const *path, int n,
+				    struct error *error)
 {
-	*scratch = NULL;
-	if (asprintf(scratch, "%s/.stdfit-XXXXXX", path) < 0) {
-		*scratch = NULL;
+	char *written;
+	if (asprintf(&written, "%s/%s", directory, name) < 0)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	}
-	if (mkdtemp(*scratch))
+	bool same = false;
+	for (int i = 0; i < n; i++)
+		same |= files_same(path[i], written);
+	free(written);
+	return same ? error_set(error, STATUS_DOMAIN, "expected another directory: %s in this one is to be read", name)
+		    : STATUS_OK;
+}
+
+enum status scratch_make(const char *path, struct scratch *scratch, struct error *error)
+{
+	char *made;
+	*scratch = (struct scratch){0};
+	if (asprintf(&made, "%s/.stdfit-XXXXXX", path) < 0)
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	const bool there = mkdtemp(made);
+	DIR *directory = there ? opendir(made) : NULL;
+	if (directory) {
+		*scratch = (struct scratch){made, directory};
 		return STATUS_OK;
+	}
 	char name[TEXT_QUOTE_SIZE];
 	const int errnum = errno;
+	if (there)
+		rmdir(made);
+	free(made);
 	text_quote(path, name, sizeof name);
-	free(*scratch);
-	*scratch = NULL;
 	return error_set(error, STATUS_IO, "cannot write to directory '%s': %s", name, strerror(errnum));
 }
 
-void scratch_remove(char *scratch)
+void scratch_remove(struct scratch *scratch)
 {
-	DIR *directory = scratch ? opendir(scratch) : NULL;
-	for (struct dirent *entry; directory && (entry = readdir(directory));)
-		unlinkat(dirfd(directory), entry->d_name, 0);
-	if (directory)
-		closedir(directory);
-	if (scratch)
-		rmdir(scratch);
-	free(scratch);
+	if (!scratch->path)
+		return;
+	rewinddir(scratch->directory);
+	for (struct dirent *entry; (entry = readdir(scratch->directory));)
+		unlinkat(dirfd(scratch->directory), entry->d_name, 0);
+	closedir(scratch->directory);
+	rmdir(scratch->path);
+	free(scratch->path);
+	*scratch = (struct scratch){0};
 }

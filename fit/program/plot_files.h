@@ -20,6 +20,9 @@ MUST_CHECK enum status plot_map(const char *directory, const struct material_dat
 /* plot_material - the three above. */
 extern const char *const plot_material_names[];
 enum { PLOT_MATERIAL_PICTURES = 3 };
+/* The CSV files of the three. */
+extern const char *const plot_material_tables[];
+enum { PLOT_MATERIAL_TABLES = 4 };
 MUST_CHECK enum status plot_material(const char *directory, const struct material_data *data, struct error *error);
 
 /* plot_errors - STATUS_NO_DATA when no row has an error. */

@@ -12,6 +12,7 @@
 #include <string.h>
 
 const char *const plot_material_names[] = {"ndf", "slices", "map"};
+const char *const plot_material_tables[] = {"ndf_D.csv", "ndf_G1.csv", "slices.csv", "map.csv"};
 
 /* Room for the axes and one panel of a grid of them. */
 enum { PANEL_WIDTH = 360, PANEL_HEIGHT = 300 };

@@ -98,35 +98,49 @@ static char *curve_label(const struct curves *c, const struct curve *curve)
 			fprintf(file, "%s%s", between, curve->row[curve_key[k]]);
 			between = ", ";
 		}
-	fclose(file);
-	return text;
+	const bool failed = ferror(file);
+	if (!fclose(file) && !failed)
+		return text;
+	free(text);
+	return NULL;
 }
 
-/* One block a curve, headed by its label: what gnuplot calls an index. An end that comes early goes on flat. */
+/* One block, headed by the curve's label: what gnuplot calls an index. An end that comes early goes on flat. */
+static enum status put_curve(FILE *file, const struct curves *c, size_t n)
+{
+	char *label = curve_label(c, &c->curve[n]), number[CSV_NUMBER_SIZE];
+	if (!label)
+		return STATUS_NO_MEMORY;
+	plot_text(file, label);
+	fputs(",error\n", file);
+	free(label);
+	for (size_t i = 0; i < c->trace->n_rows; i++) {
+		if (c->of[i] != n)
+			continue;
+		fputs(c->trace->row[i][TRACE_SECONDS], file);
+		plot_number(file, cell_number(c->trace->row[i], TRACE_ERROR));
+		fputc('\n', file);
+	}
+	fputs(csv_number(number, c->end), file);
+	plot_number(file, c->curve[n].last);
+	fputc('\n', file);
+	return STATUS_OK;
+}
+
 static enum status write_curves(const char *directory, const struct curves *c, struct error *error)
 {
 	struct atomic_file file;
-	const enum status status = plot_open(&file, directory, "trace.csv", error);
+	enum status status = plot_open(&file, directory, "trace.csv", error);
 	if (status)
 		return status;
-	for (size_t n = 0; n < c->n; n++) {
-		char *label = curve_label(c, &c->curve[n]), number[CSV_NUMBER_SIZE];
+	for (size_t n = 0; n < c->n && !status; n++) {
 		fputs(n ? "\n\n" : "", file.stream);
-		plot_text(file.stream, label ? label : "");
-		fputs(",error\n", file.stream);
-		free(label);
-		for (size_t i = 0; i < c->trace->n_rows; i++) {
-			if (c->of[i] != n)
-				continue;
-			fputs(c->trace->row[i][TRACE_SECONDS], file.stream);
-			plot_number(file.stream, cell_number(c->trace->row[i], TRACE_ERROR));
-			fputc('\n', file.stream);
-		}
-		fputs(csv_number(number, c->end), file.stream);
-		plot_number(file.stream, c->curve[n].last);
-		fputc('\n', file.stream);
+		status = put_curve(file.stream, c, n);
 	}
-	return atomic_file_commit(&file, error);
+	if (!status)
+		return atomic_file_commit(&file, error);
+	atomic_file_abort(&file);
+	return error_set(error, status, "out of memory");
 }
 
 /* Where the ends lie that come near the best one, and some of the way there. */
