@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files and names that nobody expects: the program takes them or says in one line why not, and ends. */
+#include "hostile_names.h"
 #include "json_check.h"
 #include "run_program.h"
-#include "text_quote.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -140,23 +140,6 @@ static void ten_thousand_files(void **state)
 }
 
 /* Names */
-
-static const char *const names[] = {
-	"plain",        " space ", "comma,comma", "\"quoted\"", "a\"b",  "new\nline",         "cr\r",    "tab\t",
-	"-dash",        "--ndf",   "=1+1",        "\xff\xfe",   "\xc3(", "\xe2\x80\xa8 line", "\x1b[2J", "back\\slash",
-	"h\xc3\xa4rte", "%s%n",    "'",           ";",          "a;b=c", "$(exit)",           "null",    "1e5",
-};
-enum { NAMES = sizeof names / sizeof *names };
-
-static void expect_printable(const char *text, int line)
-{
-	for (const char *at = text; *at;) {
-		const size_t length = *at == '\n' ? 1 : text_printable(at);
-		if (length == 0)
-			fail_msg("line %d: expected printable text, found byte %02x in: %s", line, (uint8_t)*at, text);
-		at += length;
-	}
-}
 
 /* The materials of a table are the names, each once. */
 static void expect_names(const char *path)

@@ -183,7 +183,7 @@ static void names_are_harmless_in_scripts(void **state)
 	FILE *file = open_memstream(&text, &size);
 	gnuplot_string(file, "it's\n\"\\\xff`x`");
 	assert_int_equal(fclose(file), 0);
-	assert_string_equal(text, "'it''s\\x0a\"\\\\xff`x`'");
+	assert_string_equal(text, "'it'.\"'\".'s\\x0a\"\\\\xff`x`'");
 	free(text);
 }
 

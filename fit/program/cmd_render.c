@@ -99,27 +99,31 @@ static void find_columns(struct render *render, const struct chosen *chosen, int
 	}
 }
 
-/* A fit has the NDFs of the options. Rows are looked at beforehand; what is wrong with them will be told later. */
-static void plan_columns(struct render *render, const struct files *files)
+/* A fit has the NDFs of the options. Rows are looked at beforehand; what is wrong with them will be told later, unless
+ * memory ran out, which may pass. */
+static enum status plan_columns(struct render *render, const struct files *files, struct error *error)
 {
 	const struct options *options = render->options;
 	if (model_source_kind(options) != SOURCE_ROWS) {
 		for (int i = 0; i < options->fit.n_ndf; i++)
 			render->column[render->n_columns++] = ndf_name(options->fit.ndf[i]);
-		return;
+		return STATUS_OK;
 	}
 	for (size_t i = 0; i < files->n; i++) {
 		struct model_source source;
 		struct chosen chosen;
-		struct error ignored;
-		if (model_source_read(options, files->path[i], &source, &ignored))
+		const enum status status = model_source_read(options, files->path[i], &source, error);
+		if (status == STATUS_NO_MEMORY)
+			return status;
+		if (status)
 			continue;
-		if (!choose(render, &source, files->path[i], &chosen, &ignored)) {
+		if (!choose(render, &source, files->path[i], &chosen, error)) {
 			int column[COLUMNS_MAX];
 			find_columns(render, &chosen, column, true);
 		}
 		model_source_free(&source);
 	}
+	return STATUS_OK;
 }
 
 /* One material */
@@ -252,8 +256,10 @@ static int show_files(struct render *render, const struct files *files)
 	const struct options *options = render->options;
 	struct error error;
 	size_t failed = 0;
-	plan_columns(render, files);
-	if (render->picture && prepare_sheet(render, files->n, &error)) {
+	enum status status = plan_columns(render, files, &error);
+	if (!status && render->picture)
+		status = prepare_sheet(render, files->n, &error);
+	if (status) {
 		report_error("%s", error.text);
 		return EXIT_FAILED;
 	}

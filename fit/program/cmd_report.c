@@ -73,14 +73,16 @@ static enum status begin(struct report *r, struct page *page, FILE *file, const 
 	};
 	struct error why;
 	const enum status status = plot_errors(r->scratch.path, materials, &why);
+	const bool wanted = status != STATUS_NO_DATA && materials->n > 1;
 	if (status && status != STATUS_NO_DATA)
 		tell(r, &why);
-	if (!status && materials->n > 1 && draw(r, name, 1, &why)) {
+	if (!status && wanted && draw(r, name, 1, &why)) {
 		errors.path = scratch_path(r, "errors.svg", &why);
 		if (!errors.path)
 			tell(r, &why);
 	}
-	const enum status begun = page_begin(page, file, materials, &errors, error);
+	const char *missing = wanted && !errors.path ? why.text : NULL;
+	const enum status begun = page_begin(page, file, materials, &errors, missing, error);
 	free(errors.path);
 	return begun;
 }

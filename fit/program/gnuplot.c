@@ -23,11 +23,11 @@ void gnuplot_string(FILE *file, const char *text)
 	char shown[TEXT_QUOTE_SIZE];
 	text_quote(text, shown, sizeof shown);
 	fputc('\'', file);
-	for (const char *c = shown; *c; c++) {
+	for (const char *c = shown; *c; c++)
 		if (*c == '\'')
-			fputc('\'', file);
-		fputc(*c, file);
-	}
+			fputs("'.\"'\".'", file);
+		else
+			fputc(*c, file);
 	fputc('\'', file);
 }
 

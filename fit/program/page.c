@@ -77,6 +77,16 @@ static enum status put_picture(FILE *page, const char *material, const struct pa
 	return status;
 }
 
+/* why: NULL if none is missing. */
+static void put_missing(FILE *page, const char *why)
+{
+	if (!why)
+		return;
+	fputs("<p>Pictures are missing: ", page);
+	html_text(page, why);
+	fputs("</p>\n", page);
+}
+
 /* The beginning */
 
 static void put_top(FILE *page, const struct materials *materials)
@@ -193,7 +203,7 @@ static void put_materials(FILE *page, const struct error_grid *grid)
 }
 
 enum status page_begin(struct page *page, FILE *file, const struct materials *materials,
-		       const struct page_picture *errors, struct error *error)
+		       const struct page_picture *errors, const char *missing, struct error *error)
 {
 	*page = (struct page){.file = file, .materials = materials};
 	if (error_grid_make(materials, &page->grid))
@@ -202,6 +212,7 @@ enum status page_begin(struct page *page, FILE *file, const struct materials *ma
 	if (put_summary(file, &page->grid))
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	const enum status status = put_picture(file, NULL, errors, error);
+	put_missing(file, missing);
 	put_materials(file, &page->grid);
 	fputs("<h2 id=\"details\">Each material</h2>\n", file);
 	return status;
@@ -340,11 +351,7 @@ enum status page_material(const struct page *page, size_t m, const struct page_p
 	fputs("</summary>\n", file);
 	for (int p = 0; p < n_pictures && !status; p++)
 		status = put_picture(file, material->name, &picture[p], error);
-	if (missing) {
-		fputs("<p>Pictures are missing: ", file);
-		html_text(file, missing);
-		fputs("</p>\n", file);
-	}
+	put_missing(file, missing);
 	put_parameters(file, material);
 	put_certainty(file, material);
 	put_origin(file, material);

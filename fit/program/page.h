@@ -21,10 +21,10 @@ struct page {
 	struct error_grid grid;
 };
 
-/* page_begin - head, summary, and the sortable table of all materials. errors: the picture of the sorted errors.
- * STATUS_NO_MEMORY; STATUS_IO: the picture cannot be read. page_free() is due in any case. */
+/* page_begin - head, summary, and the sortable table of all materials. errors: the picture of the sorted errors;
+ * missing: why it is missing, NULL if it is not meant to be there. STATUS_NO_MEMORY; STATUS_IO: the picture cannot be read. page_free() is due in any case. */
 MUST_CHECK enum status page_begin(struct page *page, FILE *file, const struct materials *materials,
-				  const struct page_picture *errors, struct error *error);
+				  const struct page_picture *errors, const char *missing, struct error *error);
 
 /* page_material - of material m: its pictures, parameters, certainty, options. missing: why pictures are missing; NULL if
  * none is. */
