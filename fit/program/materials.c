@@ -3,6 +3,7 @@
 #include "batch.h"
 #include "files.h"
 #include "merl.h"
+#include "output_directory.h"
 #include "store.h"
 #include "text_quote.h"
 
@@ -132,6 +133,16 @@ static int fit_rows(struct csv_table *rows, const struct options *options)
 	const int bad = files_collect(&files, options->path, options->n_paths, options->recursive, options->cancel);
 	if (bad < 0)
 		return EXIT_FAILED;
+	struct error error;
+	const enum status spared =
+		output_directory_spares(options->output, "fits.csv", files.path, (int)files.n, &error);
+	if (spared) {
+		files_free(&files);
+		if (spared == STATUS_DOMAIN)
+			return options_usage(options->command, "%s", error.text);
+		report_error("%s", error.text);
+		return EXIT_FAILED;
+	}
 	if (batch_init(&batch, options, &files)) {
 		files_free(&files);
 		return EXIT_FAILED;
