@@ -268,8 +268,8 @@ static void directories_that_take_nothing(void **state)
 					      "export " MODEL " --format json -o shut/x.json",
 					      "compare fit.csv --pictures -o shut/x.csv"};
 	static const char *const file[] = {"plot fit.csv -o a.binary", "report fit.csv -o a.binary",
-					   "render a.binary " MODEL " -o a.binary/x.pfm",
-					   "plot fit.csv -o a.binary/below", "report fit.csv -o a.binary/below"};
+					   "render a.binary --kd 1 -o a.binary/x.pfm", "plot fit.csv -o a.binary/below",
+					   "report fit.csv -o a.binary/below"};
 	for (size_t f = 0; f < sizeof file / sizeof *file; f++) {
 		stdfit(file[f]);
 		expect_error(1, "Not a directory");
