@@ -6,16 +6,6 @@
 #include "run_fit.h"
 #include <omp.h>
 
-static struct fit_options options_for(const char *ndf)
-{
-	struct fit_options o = fit_options_default();
-
-	o.ndf[0] = ndf_find(ndf);
-	o.n_ndf = 1;
-	o.threads = 2;
-	return o;
-}
-
 struct material {
 	const char *what, *ndf;
 	double sigma, gamma, n;

@@ -265,16 +265,6 @@ static const struct stiff {
 	{"blocks missing", blocks_missing, 1e-5, 0, 0, true},
 };
 
-static struct fit_options options_of(const char *ndf)
-{
-	struct fit_options o = fit_options_default();
-
-	o.ndf[0] = ndf_find(ndf);
-	o.n_ndf = 1;
-	o.threads = 2;
-	return o;
-}
-
 /* kd and ks are certified to 1e-7 of the optimum for their shape. */
 static const double rounding = 2e-7;
 
@@ -294,7 +284,7 @@ static double error_with(const struct samples *samples, const struct fit_options
 
 static void check_simpler(const struct stiff *stiff, const struct samples *samples, double error)
 {
-	struct fit_options simpler = options_of("std"), other = simpler;
+	struct fit_options simpler = options_for("std"), other = simpler;
 	char label[96];
 
 	simpler.specular = false;
@@ -316,7 +306,7 @@ static void stiff_tables(void **state)
 	(void)state;
 	for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
 		const struct stiff *stiff = &cases[n];
-		const struct fit_options options = options_of("std"), three = fit_options_default();
+		const struct fit_options options = options_for("std"), three = fit_options_default();
 		struct fit_result r;
 		char label[96];
 
@@ -351,7 +341,7 @@ static void stiff_tables(void **state)
 /* Half of the values move to the next float. */
 static void a_rounding_of_the_data(void **state)
 {
-	const struct fit_options options = options_of("ggx");
+	const struct fit_options options = options_for("ggx");
 	struct samples samples = noise();
 
 	(void)state;
@@ -364,7 +354,7 @@ static void a_rounding_of_the_data(void **state)
 
 static void only_what_is_free_is_named(void **state)
 {
-	struct fit_options options = options_of("ggx");
+	struct fit_options options = options_for("ggx");
 	struct samples samples = noisy_lambertian();
 	struct fit_result r;
 
