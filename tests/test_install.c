@@ -36,8 +36,9 @@ static void all_is_there(void **state)
 static void only_public_symbols(void **state)
 {
 	(void)state;
-	run("ls usr/include/stdfit/*.h | grep -v '/stdfit[.]h' | xargs cat | $cc -fpreprocessed -E -P -x c - |"
-	    " awk -f \"$ROOT/tests/declared.awk\" | sort -u >declared\n"
+	run("ls usr/include/stdfit/*.h | grep -v '/stdfit[.]h' | xargs cat | sed -e ':a' -e "
+	    "'/\\\\$/{N;s/\\\\\\n//;ta}' -e '/^#/d' |"
+	    " $cc -E -P -x c - | awk -f \"$ROOT/tests/declared.awk\" | sort -u >declared\n"
 	    "test $(wc -l <declared) -gt 80 && grep -q -x fit_run declared && ! grep -q -x vec3_dot declared",
 	    0);
 	run("nm -D --defined-only usr/lib/libstdfit.so | awk '{ print $3 }' | grep -v '^__' | sort | diff declared -",

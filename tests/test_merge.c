@@ -215,15 +215,17 @@ static void failed_writes(void **state)
 	expect_error(1, "cannot write standard output: No space left on device");
 	stdfit("merge p-1.csv p-2.csv -o /dev/full");
 	expect_error(1, "cannot write '/dev/full': No space left on device");
-	shell("cp whole.csv stays.csv; ulimit -f 1; exec \"$STDFIT\" merge p-1.csv p-2.csv p-3.csv -o stays.csv");
-	expect_error(1, "cannot write 'stays.csv': File too large");
-	shell("cmp whole.csv stays.csv && ! ls -a | grep -e 'stays.csv~' -e '[.]tmp$'");
-	expect_code(0);
 	/* Through a symbolic link: the link stays, what it led to is replaced, and kept. */
 	shell("mkdir far; cp whole.csv far/real.csv; ln -s far/real.csv link.csv;"
 	      "\"$STDFIT\" merge p-1.csv p-2.csv -o link.csv && test -L link.csv && cmp link.csv~ whole.csv && ! cmp "
 	      "-s "
 	      "far/real.csv whole.csv");
+	expect_code(0);
+	if (THREAD_SANITIZER)
+		return;
+	shell("cp whole.csv stays.csv; ulimit -f 1; exec \"$STDFIT\" merge p-1.csv p-2.csv p-3.csv -o stays.csv");
+	expect_error(1, "cannot write 'stays.csv': File too large");
+	shell("cmp whole.csv stays.csv && ! ls -a | grep -e 'stays.csv~' -e '[.]tmp$'");
 	expect_code(0);
 }
 
