@@ -63,9 +63,9 @@ static double upper_tail(const struct student *student, const struct point *at)
 {
 	const double q = student->p - 0.5;
 	const double front = student->k * at->power * at->root_x; /* k x^q */
-	const double z2 = q * at->y / at->x;
 	if (at->x < 0.5)
 		return 0.5 * front / q * tail_series(q, at->x);
+	const double z2 = q * at->y / at->x;
 	if (z2 < 4.0)
 		return 0.5 - front * at->root_y * body_series(student->p, at->y);
 	return 0.5 * front * at->root_y / q * tail_fraction(q, at->x, at->y, 6 + (int)(90.0 / z2));
