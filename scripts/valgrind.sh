@@ -18,7 +18,7 @@ check() {
 	shift
 	echo "valgrind: stdfit $*" >&2
 	code=0
-	valgrind --quiet --error-exitcode=99 --leak-check=full --show-leak-kinds=all --errors-for-leak-kinds=all \
+	valgrind --quiet --num-callers=40 --error-exitcode=99 --leak-check=full --show-leak-kinds=all --errors-for-leak-kinds=all \
 		--suppressions="$suppressions" "$stdfit" "$@" >out 2>err || code=$?
 	[ "$code" -eq "$want" ] || {
 		cat err >&2
