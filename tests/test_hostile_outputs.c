@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Places that cannot take what is written: a full disk, closed streams, directories that are none or closed, inputs. Each
  * file is whole, as it was, or not there, and one line says why. */
+#include "image.h"
 #include "run_program.h"
 
 #include <sched.h>
@@ -116,6 +117,8 @@ static void old_files_on_a_full_disk(void **state)
 	for (size_t c = 0; c < sizeof command / sizeof *command; c++) {
 		const bool place = !strcmp(command[c].arguments, "synth"); /* its output has no option */
 		char text[256];
+		if (strstr(command[c].output, ".png") && !image_has_png())
+			continue;
 		snprintf(text, sizeof text, "rm -f disk/*; echo old >disk/%s", command[c].output);
 		shell(text);
 		fill_disk(0);
