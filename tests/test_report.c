@@ -237,6 +237,7 @@ static void an_interrupt_leaves_the_old_page(void **state)
 	      "1; "
 	      "done; kill -INT $pid; wait $pid");
 	expect_code(130);
+	drop_no_png();
 	assert_string_equal(last.err, "");
 	expect_in_page("held/index.html", "old", true);
 	expect_nothing_left();
