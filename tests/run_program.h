@@ -166,6 +166,12 @@ static inline void write_text(const char *path, const char *text)
 	assert_int_equal(fclose(file), 0);
 }
 
+/* Whether a command can draw plots here. */
+static inline bool have_gnuplot(void)
+{
+	return system("command -v gnuplot >/dev/null") == 0;
+}
+
 /* A build without libpng says so first when a page is to have spheres; takes that line off. */
 static inline void drop_no_png(void)
 {

@@ -8,11 +8,6 @@
 /* A fit that takes a moment: few free parameters, few entries. */
 #define CHEAP "--ndf ggx --sigma 0.2 --ior 1.5 --max-theta 5"
 
-static bool have_gnuplot(void)
-{
-	return system("command -v gnuplot >/dev/null") == 0;
-}
-
 static const char *const hostile_names[] = {HOSTILE_NAMES, "new\nline",   "\xff\xfe", "comma,comma",
 					    "a\"b",        "back\\slash", "-->",      "-dash"};
 enum { HOSTILE = sizeof hostile_names / sizeof *hostile_names, DRAWN = 4 };

@@ -26,11 +26,6 @@ static int set_up(void **state)
 	return last.code;
 }
 
-static bool have_gnuplot(void)
-{
-	return system("command -v gnuplot >/dev/null") == 0;
-}
-
 /* A small disk of our own at disk/, until unmount_disk(); skips the test where that is not permitted. */
 static void mount_disk(const char *options)
 {

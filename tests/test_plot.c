@@ -19,11 +19,6 @@
 static struct samples measured_table;
 static struct cook_torrance table_model;
 
-static bool have_gnuplot(void)
-{
-	return system("command -v gnuplot >/dev/null") == 0;
-}
-
 static void mask_entry(struct samples *samples, int i, int j, int k)
 {
 	for (int c = 0; c < 3; c++)

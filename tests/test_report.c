@@ -13,11 +13,6 @@
 
 static char *browser_script;
 
-static bool have_gnuplot(void)
-{
-	return system("command -v gnuplot >/dev/null") == 0;
-}
-
 static void any_text_is_text(void **state)
 {
 	(void)state;
