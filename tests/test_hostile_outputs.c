@@ -255,6 +255,35 @@ static void pictures_into_a_pipe(void **state)
 	expect_error(1, "cannot write 'pipe.pfm': Broken pipe");
 }
 
+/* One file of several is not waited for at a pipe, and no directory is in its place; the rest stays and gets done. */
+static void places_that_are_taken(void **state)
+{
+	(void)state;
+	static const char *const name[] = {"errors.csv", "a/map.gp", "a/ndf.png", "index.html", "fits.csv"};
+	static const char *const make[] = {"mkfifo", "mkdir"};
+	static const char *const found[] = {"found a pipe or device", "found a directory"};
+	for (size_t n = 0; n < sizeof name / sizeof *name; n++)
+		for (size_t m = 0; m < sizeof make / sizeof *make; m++) {
+			char text[256];
+			const bool picture = strstr(name[n], ".png");
+			if (picture && !have_gnuplot())
+				continue;
+			snprintf(text, sizeof text, "rm -rf place; mkdir -p place/a; %s place/%s", make[m], name[n]);
+			shell(text);
+			expect_code(0);
+			snprintf(text, sizeof text, "%s \"$STDFIT\" %s -o place", picture ? "" : "PATH=/nowhere",
+				 !strcmp(name[n], "index.html") ? "report fit.csv"
+				 : !strcmp(name[n], "fits.csv") ? "plot a.binary " CHEAP
+								: "plot fit.csv");
+			shell(text);
+			expect_code(1);
+			snprintf(text, sizeof text, "cannot write 'place/%s': expected a file or nothing there, %s\n",
+				 name[n], found[m]);
+			expect_part(last.err, text, __LINE__);
+		}
+	shell("rm -r place");
+}
+
 static void directories_that_take_nothing(void **state)
 {
 	(void)state;
@@ -323,7 +352,7 @@ int main(void)
 		cmocka_unit_test(plots_on_a_small_disk),     cmocka_unit_test(pages_on_a_small_disk),
 		cmocka_unit_test(files_that_grow_too_large), cmocka_unit_test(streams_that_take_nothing),
 		cmocka_unit_test(pictures_into_a_pipe),      cmocka_unit_test(directories_that_take_nothing),
-		cmocka_unit_test(outputs_that_are_inputs),
+		cmocka_unit_test(places_that_are_taken),     cmocka_unit_test(outputs_that_are_inputs),
 	};
 	return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -277,6 +277,8 @@ int cmd_report(int argc, char **argv, atomic_bool *cancel)
 		status = output_directory_spares(options.output, "index.html", options.path, options.n_paths, &error);
 	if (status == STATUS_DOMAIN)
 		return options_usage(COMMAND_REPORT, "%s", error.text);
+	if (!status)
+		status = output_directory_takes(options.output, "index.html", &error);
 	if (status) {
 		report_error("%s", error.text);
 		return EXIT_FAILED;

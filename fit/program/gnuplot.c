@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gnuplot.h"
+#include "output_directory.h"
 #include "text_quote.h"
 
 #include <errno.h>
@@ -157,6 +158,8 @@ static enum status settle(int at, const char *directory, const char *name, const
 	const char *why = !keep ? NULL : fd < 0 ? strerror(errno) : check_end(fd);
 	if (fd >= 0)
 		close(fd);
+	if (keep && !why)
+		why = output_place_trouble(at, picture);
 	if (keep && !why && renameat(at, temp, at, picture))
 		why = strerror(errno);
 	if (!keep || why)

@@ -134,11 +134,12 @@ static int fit_rows(struct csv_table *rows, const struct options *options)
 	if (bad < 0)
 		return EXIT_FAILED;
 	struct error error;
-	const enum status spared =
-		output_directory_spares(options->output, "fits.csv", files.path, (int)files.n, &error);
-	if (spared) {
+	enum status status = output_directory_spares(options->output, "fits.csv", files.path, (int)files.n, &error);
+	if (!status)
+		status = output_directory_takes(options->output, "fits.csv", &error);
+	if (status) {
 		files_free(&files);
-		if (spared == STATUS_DOMAIN)
+		if (status == STATUS_DOMAIN)
 			return options_usage(options->command, "%s", error.text);
 		report_error("%s", error.text);
 		return EXIT_FAILED;

@@ -4,6 +4,7 @@
 #include "text_quote.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -55,6 +56,26 @@ enum status output_directory_spares(const char *directory, const char *name, cha
 	free(written);
 	return same ? error_set(error, STATUS_DOMAIN, "expected another directory: %s in this one is to be read", name)
 		    : STATUS_OK;
+}
+
+const char *output_place_trouble(int at, const char *name)
+{
+	struct stat info;
+	if (fstatat(at, name, &info, 0) || S_ISREG(info.st_mode))
+		return NULL;
+	return S_ISDIR(info.st_mode) ? "expected a file or nothing there, found a directory"
+				     : "expected a file or nothing there, found a pipe or device";
+}
+
+enum status output_directory_takes(const char *directory, const char *name, struct error *error)
+{
+	char *path, shown[TEXT_QUOTE_SIZE];
+	if (asprintf(&path, "%s/%s", directory, name) < 0)
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	const char *trouble = output_place_trouble(AT_FDCWD, path);
+	text_quote(path, shown, sizeof shown);
+	free(path);
+	return trouble ? error_set(error, STATUS_IO, "cannot write '%s': %s", shown, trouble) : STATUS_OK;
 }
 
 enum status scratch_make(const char *path, struct scratch *scratch, struct error *error)

@@ -16,6 +16,13 @@ MUST_CHECK enum status output_directory_make(const char *path, const char *below
 MUST_CHECK enum status output_directory_spares(const char *directory, const char *name, char *const *path, int n,
 					       struct error *error);
 
+/* output_directory_takes - whether NAME in the directory can become a file: nothing stands there, or a regular file. Who
+ * writes to a pipe waits for its reader; that is no place for one file of several.
+ * Errors: STATUS_IO: something else is there; STATUS_NO_MEMORY. */
+MUST_CHECK enum status output_directory_takes(const char *directory, const char *name, struct error *error);
+/* output_place_trouble - the same for a name in the directory that is open as `at`: NULL, or why not. Allocates nothing. */
+const char *output_place_trouble(int at, const char *name);
+
 /* struct scratch - a directory for files that are needed for a while. */
 struct scratch {
 	char *path;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_common.h"
 #include "csv.h"
+#include "output_directory.h"
 #include "text_quote.h"
 
 #include <math.h>
@@ -10,9 +11,12 @@
 enum status plot_open(struct atomic_file *file, const char *directory, const char *name, struct error *error)
 {
 	char *path;
+	enum status status = output_directory_takes(directory, name, error);
+	if (status)
+		return status;
 	if (asprintf(&path, "%s/%s", directory, name) < 0)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	const enum status status = atomic_file_open(file, path, error);
+	status = atomic_file_open(file, path, error);
 	free(path);
 	return status;
 }
