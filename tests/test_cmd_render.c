@@ -223,9 +223,44 @@ static void one_bad_file_costs_only_itself(void **state)
 	expect_error(1, "no-such.binary");
 	assert_int_equal(count_lines(last.out), 2);
 	assert_true(is_there("rest.pfm"));
+	/* It leaves no gap either. */
+	stdfit("render m.binary n.binary " MODEL " " QUICK " -o both.pfm");
+	expect_code(0);
+	stdfit("render m.binary no-such.binary n.binary " MODEL " " QUICK " -o gap.pfm");
+	expect_error(1, "no-such.binary");
+	shell("cmp both.pfm gap.pfm");
+	expect_code(0);
 	stdfit("render no-such.binary " MODEL " " QUICK " -o none.pfm");
 	expect_error(1, "no-such.binary");
 	assert_false(is_there("none.pfm"));
+}
+
+/* A picture beside a fit of something else would be no comparison. */
+static void files_are_those_that_were_fitted(void **state)
+{
+	(void)state;
+	shell("mkdir moved; cp m.binary moved/a.binary; cp n.binary moved/b.binary");
+	stdfit("fit moved " CHEAP " -o moved.csv");
+	expect_code(0);
+	shell("cp n.binary moved/a.binary");
+	stdfit("render moved.csv " QUICK " -o moved.pfm");
+	expect_error(1, "'moved/a.binary': it is not the file any more that was fitted");
+	assert_int_equal(count_lines(last.out), 3);
+	expect_out("\nb,ggx,");
+	stdfit("compare moved.csv --pictures");
+	expect_error(1, "'moved/a.binary': it is not the file any more that was fitted");
+	assert_int_equal(count_lines(last.out), 7);
+	const char *end = strstr(strstr(last.out, "\na,") + 1, "\n");
+	assert_memory_equal(end - 4, ",,,,", 4);
+	/* Who names the file wants to see it beside these models. */
+	stdfit("render moved/a.binary --from moved.csv " QUICK);
+	expect_code(0);
+	stdfit("render moved/a.binary n.binary --from moved.csv " QUICK);
+	expect_error(1, "'moved.csv' has no such row: expected one of material 'n'");
+	/* A table that does not say where its files are. */
+	shell("sed 's,moved/b.binary,,' moved.csv >nowhere.csv; cp m.binary moved/a.binary");
+	stdfit("compare nowhere.csv --pictures");
+	expect_error(1, "cannot render 'b': the table has no path of its file");
 }
 
 static void interrupted(void **state)
@@ -253,10 +288,15 @@ static int set_up(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(a_material_beside_its_own_model), cmocka_unit_test(the_same_bits_for_seed_and_threads),
-		cmocka_unit_test(png_or_what_stands_for_it),       cmocka_unit_test(fits_and_tables_make_sheets),
-		cmocka_unit_test(light_of_several_kinds),          cmocka_unit_test(what_is_refused),
-		cmocka_unit_test(one_bad_file_costs_only_itself),  cmocka_unit_test(interrupted),
+		cmocka_unit_test(a_material_beside_its_own_model),
+		cmocka_unit_test(the_same_bits_for_seed_and_threads),
+		cmocka_unit_test(png_or_what_stands_for_it),
+		cmocka_unit_test(fits_and_tables_make_sheets),
+		cmocka_unit_test(light_of_several_kinds),
+		cmocka_unit_test(what_is_refused),
+		cmocka_unit_test(one_bad_file_costs_only_itself),
+		cmocka_unit_test(files_are_those_that_were_fitted),
+		cmocka_unit_test(interrupted),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);
 }

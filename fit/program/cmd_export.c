@@ -27,14 +27,6 @@ static int check(const struct options *options)
 	return -1;
 }
 
-/* Whether these are the bytes that the row was made from, if it says from which. */
-static bool is_input(const struct source_model *model, const struct samples *samples)
-{
-	char input[RESULT_INPUT_SIZE];
-	result_input(input, samples);
-	return !*model->input || !strcmp(input, model->input);
-}
-
 /* Reads the measurement where the export has use for it: the FILE given, or the one that the row is of, if that is there
  * and still the same. Else it does without; the export tells what its errors are against. *found is its path, or NULL.
  * Fails only when out of memory: that says nothing about the file. */
@@ -48,7 +40,7 @@ static enum status find_samples(const struct options *options, const struct sour
 	const enum status status = merl_read(path, options->fit.threads, samples, error);
 	if (status)
 		return status == STATUS_NO_MEMORY ? status : STATUS_OK;
-	if (options->n_paths || is_input(model, samples))
+	if (options->n_paths || result_is_input(model->input, samples))
 		*found = path;
 	else
 		samples_free(samples);

@@ -40,6 +40,7 @@ struct render {
 	const char *column[COLUMNS_MAX]; /* NDFs of the sheet's columns, behind that of the measured table */
 	int n_columns;
 	struct sheet sheet;
+	int n_drawn; /* rows of it: a material that fails has none */
 	struct csv_table output;
 	struct progress progress;
 };
@@ -144,10 +145,20 @@ static enum status add_row(struct render *render, const char *material, const st
 	return csv_table_add(&render->output, cell);
 }
 
-static void draw(struct render *render, int row, const char *material, const struct chosen *chosen,
+/* What stands above a sphere, as far as there is room for it. */
+static void write_label(const struct sheet *sheet, const struct picture_error *error, char *label, size_t size)
+{
+	const int length = snprintf(label, size, "dE %.2f SSIM %.3f", error->delta_e, error->ssim);
+	if (length > sheet_label_length(sheet))
+		snprintf(label, size, "dE %.2f", error->delta_e);
+}
+
+/* In the next row of the sheet. */
+static void draw(struct render *render, const char *material, const struct chosen *chosen,
 		 const struct pictures *pictures)
 {
 	struct sheet *sheet = &render->sheet;
+	const int row = render->n_drawn++;
 	int column[COLUMNS_MAX];
 	find_columns(render, chosen, column, false);
 	sheet_sphere(sheet, 0, row, &pictures->measured, material);
@@ -157,7 +168,7 @@ static void draw(struct render *render, int row, const char *material, const str
 		char label[64];
 		if (column[i] < 0)
 			continue;
-		snprintf(label, sizeof label, "dE %.2f SSIM %.3f", pictures->error[i].delta_e, pictures->error[i].ssim);
+		write_label(sheet, &pictures->error[i], label, sizeof label);
 		sheet_sphere(sheet, 1 + column[i], row, &pictures->sphere[i], label);
 		if (sheet->differences)
 			sheet_difference(sheet, 1 + column[i], row, &pictures->sphere[i], &pictures->measured);
@@ -165,7 +176,7 @@ static void draw(struct render *render, int row, const char *material, const str
 }
 
 /* Renders the models of a table that has been read, draws and reports them. */
-static enum status show_models(struct render *render, int row, const char *path, const struct samples *samples,
+static enum status show_models(struct render *render, const char *path, const struct samples *samples,
 			       const struct chosen *chosen)
 {
 	struct pictures pictures;
@@ -180,32 +191,38 @@ static enum status show_models(struct render *render, int row, const char *path,
 	for (int i = 0; i < chosen->n && !status; i++)
 		status = add_row(render, material, chosen->model[i], &pictures.error[i]);
 	if (!status && render->picture)
-		draw(render, row, material, chosen, &pictures);
+		draw(render, material, chosen, &pictures);
 	pictures_free(&pictures);
 	free(material);
 	return status;
 }
 
-static enum status show_source(struct render *render, int row, const char *path, struct model_source *source,
+static enum status show_source(struct render *render, const char *path, struct model_source *source,
 			       struct error *error)
 {
 	struct chosen chosen;
 	enum status status = choose(render, source, path, &chosen, error);
 	if (!status && !source->samples.value[0])
 		status = merl_read(path, render->options->fit.threads, &source->samples, error);
+	for (int i = 0; i < chosen.n && !status && render->from_table; i++)
+		status = result_check_input(chosen.model[i]->input, &source->samples, path, error);
 	if (status)
 		return status;
-	status = show_models(render, row, path, &source->samples, &chosen);
-	return status ? error_set(error, status, "%s", status_str(status)) : STATUS_OK;
+	status = show_models(render, path, &source->samples, &chosen);
+	if (!status)
+		return STATUS_OK;
+	char name[TEXT_QUOTE_SIZE];
+	text_quote(path, name, sizeof name);
+	return error_set(error, status, "cannot render '%s': %s", name, status_str(status));
 }
 
-static enum status show_file(struct render *render, int row, const char *path)
+static enum status show_file(struct render *render, const char *path)
 {
 	struct model_source source;
 	struct error error;
 	enum status status = model_source_read(render->options, path, &source, &error);
 	if (!status) {
-		status = show_source(render, row, path, &source, &error);
+		status = show_source(render, path, &source, &error);
 		model_source_free(&source);
 	}
 	if (status && status != STATUS_INTERRUPTED) {
@@ -266,11 +283,12 @@ static int show_files(struct render *render, const struct files *files)
 	render->progress =
 		progress_start(files->n * (size_t)((1 + render->n_columns) * options->size), "rows", options->quiet);
 	for (size_t i = 0; i < files->n && !*options->cancel; i++)
-		failed += show_file(render, (int)i, files->path[i]) != STATUS_OK;
+		failed += show_file(render, files->path[i]) != STATUS_OK;
 	progress_erase(&render->progress);
 	report_output(&render->output, options_show(options), report_table);
 	if (*options->cancel)
 		return EXIT_INTERRUPTED;
+	sheet_end(&render->sheet, render->n_drawn);
 	if (render->picture && failed < files->n && write_picture(render, &error)) {
 		report_error("%s", error.text);
 		return EXIT_FAILED;

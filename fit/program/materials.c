@@ -234,16 +234,13 @@ static enum status read_samples(const struct material *material, int threads, st
 				struct error *error)
 {
 	char *const *row = material->row[0];
-	char input[RESULT_INPUT_SIZE], name[TEXT_QUOTE_SIZE];
-	const enum status status = merl_read(row[RESULT_PATH], threads, samples, error);
+	enum status status = merl_read(row[RESULT_PATH], threads, samples, error);
 	if (status)
 		return status;
-	result_input(input, samples);
-	if (!*row[RESULT_INPUT] || !strcmp(input, row[RESULT_INPUT]))
-		return STATUS_OK;
-	text_quote(row[RESULT_PATH], name, sizeof name);
-	samples_free(samples);
-	return error_set(error, STATUS_FORMAT, "cannot show '%s': it is not the file any more that was fitted", name);
+	status = result_check_input(row[RESULT_INPUT], samples, row[RESULT_PATH], error);
+	if (status)
+		samples_free(samples);
+	return status;
 }
 
 enum status material_read(const struct material *material, int threads, struct material_data *data, struct error *error)

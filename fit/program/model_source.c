@@ -147,6 +147,17 @@ static enum status add_row(const struct options *options, char *const *row, size
 	return !*row[RESULT_PATH] || set_path(model, row[RESULT_PATH]) ? STATUS_OK : no_memory(error);
 }
 
+static enum status no_row(const struct options *options, const char *material, struct error *error)
+{
+	char name[TEXT_QUOTE_SIZE], wanted_name[TEXT_QUOTE_SIZE];
+	text_quote(options->from, name, sizeof name);
+	text_quote(material ? material : "", wanted_name, sizeof wanted_name);
+	if (!material || options->row)
+		return error_set(error, STATUS_NO_DATA, "'%s' has no such row", name);
+	return error_set(error, STATUS_NO_DATA, "'%s' has no such row: expected one of material '%s'", name,
+			 wanted_name);
+}
+
 static enum status read_rows(const struct options *options, const char *material, struct model_source *source,
 			     struct error *error)
 {
@@ -156,12 +167,7 @@ static enum status read_rows(const struct options *options, const char *material
 		if (wanted(options, rows.row[i], i, material))
 			status = add_row(options, rows.row[i], i + 1, source, error);
 	csv_table_free(&rows);
-	if (!status && !source->n) {
-		char name[TEXT_QUOTE_SIZE];
-		text_quote(options->from, name, sizeof name);
-		status = error_set(error, STATUS_NO_DATA, "'%s' has no such row", name);
-	}
-	return status;
+	return !status && !source->n ? no_row(options, material, error) : status;
 }
 
 /* The one model of a file that `stdfit export --format json` wrote, whatever the material. */

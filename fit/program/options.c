@@ -87,8 +87,8 @@ static const struct command_text commands[COMMAND_COUNT] = {
 	[COMMAND_REPORT] =
 		{"report", "PATH...", "fits as one HTML page that needs no other file",
 		 "Takes a result table (FILE.csv), or fits MERL files or directories. Writes index.html into the\n"
-		 "directory of -o: a summary, a table that can be sorted, and per material its plots (see\n"
-		 "stdfit plot), parameters, their certainty, options and versions.\n"},
+		 "directory of -o: a summary, a table that can be sorted, and per material its spheres (see\n"
+		 "stdfit render), plots (see stdfit plot), parameters, their certainty, options and versions.\n"},
 };
 
 const struct command_text *options_command(enum command command)
@@ -135,16 +135,16 @@ char *options_text(const struct options *options)
 
 /* Help */
 
-enum { HELP_WIDTH = 22 };
+enum { HELP_WIDTH = 21 };
 
 static void print_option(const struct options *defaults, const struct option_spec *spec)
 {
 	char name[64];
 	snprintf(name, sizeof name, "--%s %s", spec->name, spec->argument ? spec->argument : "");
 	if (spec->letter)
-		printf("  -%c, %-*s", spec->letter, HELP_WIDTH, name);
+		printf("  -%c, %-*s ", spec->letter, HELP_WIDTH, name);
 	else
-		printf("      %-*s", HELP_WIDTH, name);
+		printf("      %-*s ", HELP_WIDTH, name);
 	option_describe(stdout, defaults, spec);
 	printf("\n");
 }
@@ -158,7 +158,7 @@ static void print_help(const struct options *defaults)
 	for (const struct option_spec *spec = option_specs; spec->name; spec++)
 		if (option_applies(spec, command))
 			print_option(defaults, spec);
-	printf("  -h, %-*sthis text\n", HELP_WIDTH, "--help");
+	printf("  -h, %-*s this text\n", HELP_WIDTH, "--help");
 	printf("\nexit code: 0 done, 1 some file failed, 2 wrong usage, 130 interrupted\n");
 }
 

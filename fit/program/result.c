@@ -56,6 +56,22 @@ void result_input(char text[RESULT_INPUT_SIZE], const struct samples *samples)
 	snprintf(text, RESULT_INPUT_SIZE, "%" PRIu64 ":%016" PRIx64, samples->file_size, samples->file_hash);
 }
 
+bool result_is_input(const char *input, const struct samples *samples)
+{
+	char text[RESULT_INPUT_SIZE];
+	result_input(text, samples);
+	return !*input || !strcmp(input, text);
+}
+
+enum status result_check_input(const char *input, const struct samples *samples, const char *path, struct error *error)
+{
+	char name[TEXT_QUOTE_SIZE];
+	if (result_is_input(input, samples))
+		return STATUS_OK;
+	text_quote(path, name, sizeof name);
+	return error_set(error, STATUS_FORMAT, "cannot show '%s': it is not the file any more that was fitted", name);
+}
+
 char *result_material(const char *path)
 {
 	static const char suffix[] = ".binary";

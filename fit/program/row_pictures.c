@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "row_pictures.h"
 #include "merl.h"
+#include "text_quote.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,6 +18,13 @@ struct models {
 	size_t *row;
 };
 
+static enum status cannot(char *const *row, enum status status, const char *why, struct error *error)
+{
+	char name[TEXT_QUOTE_SIZE];
+	text_quote(row[RESULT_MATERIAL], name, sizeof name);
+	return error_set(error, status, "cannot render '%s': %.200s", name, why);
+}
+
 static enum status models_read(struct models *m, char **const *rows, size_t n, const struct fit_options *options,
 			       struct error *error)
 {
@@ -32,9 +40,10 @@ static enum status models_read(struct models *m, char **const *rows, size_t n, c
 		const int at = m->n;
 		if (result_failed(rows[i]))
 			continue;
-		const enum status status = result_model(rows[i], &m->model[at], &fit, &m->pwl[at], error);
+		struct error why;
+		const enum status status = result_model(rows[i], &m->model[at], &fit, &m->pwl[at], &why);
 		if (status)
-			return status;
+			return cannot(rows[i], status, why.text, error);
 		m->bins = fit.bins;
 		m->shown[at] = (struct pictures_model){&m->model[at], result_number(rows[i], RESULT_ERROR)};
 		m->row[m->n++] = i;
@@ -52,20 +61,35 @@ static void models_free(struct models *m)
 	free(m->row);
 }
 
-static enum status render(const struct models *m, const char *path, const struct fit_options *options,
+/* Every row must be of the bytes that are there. */
+static enum status read_samples(const struct models *m, char **const *rows, const struct fit_options *options,
+				struct samples *samples, struct error *error)
+{
+	const char *path = rows[0][RESULT_PATH];
+	if (!*path)
+		return cannot(rows[0], STATUS_NO_DATA, "the table has no path of its file", error);
+	enum status status = merl_read(path, options->threads, samples, error);
+	if (status)
+		return status;
+	for (int i = 0; i < m->n && !status; i++)
+		status = result_check_input(rows[m->row[i]][RESULT_INPUT], samples, path, error);
+	if (status)
+		samples_free(samples);
+	return status;
+}
+
+static enum status render(const struct models *m, char **const *rows, const struct fit_options *options,
 			  const struct environment *light, struct pictures *pictures, struct error *error)
 {
 	const struct sphere_options sphere = {
 		.size = SIZE, .samples = SAMPLES, .threads = options->threads, .cancel = options->cancel};
 	struct samples samples;
-	if (!*path)
-		return error_set(error, STATUS_NO_DATA, "there is no path of a MERL file in the table to render from");
-	enum status status = merl_read(path, options->threads, &samples, error);
+	enum status status = read_samples(m, rows, options, &samples, error);
 	if (status)
 		return status;
 	status = pictures_render(&samples, m->bins, m->shown, m->n, SAMPLING_VISIBLE, light, &sphere, pictures);
 	samples_free(&samples);
-	return status ? error_set(error, status, "%s", status_str(status)) : STATUS_OK;
+	return status ? cannot(rows[0], status, status_str(status), error) : STATUS_OK;
 }
 
 enum status row_pictures_errors(char **const *rows, size_t n, const struct fit_options *options,
@@ -77,7 +101,7 @@ enum status row_pictures_errors(char **const *rows, size_t n, const struct fit_o
 		errors[i] = (struct picture_error){NAN, NAN, NAN};
 	enum status status = models_read(&models, rows, n, options, error);
 	if (!status && models.n)
-		status = render(&models, rows[0][RESULT_PATH], options, light, &pictures, error);
+		status = render(&models, rows, options, light, &pictures, error);
 	for (int i = 0; i < pictures.n; i++)
 		errors[models.row[i]] = pictures.error[i];
 	pictures_free(&pictures);

@@ -48,6 +48,19 @@ void sheet_free(struct sheet *sheet)
 	image_free(&sheet->image);
 }
 
+void sheet_end(struct sheet *sheet, int n)
+{
+	if (n >= sheet->rows)
+		return;
+	sheet->rows = n;
+	sheet->image.height = label_height(sheet) + n * row_height(sheet);
+}
+
+int sheet_label_length(const struct sheet *sheet)
+{
+	return sheet->size / (FONT_ADVANCE * sheet->scale);
+}
+
 /* The upper left corner of a cell's label; a sphere and a difference are below it. */
 static int cell_x(const struct sheet *sheet, int column)
 {

@@ -19,6 +19,10 @@ struct sheet {
 /* sheet_init - an empty sheet. STATUS_DOMAIN where it would be larger than a picture can be; STATUS_NO_MEMORY. */
 MUST_CHECK enum status sheet_init(struct sheet *sheet, int size, int columns, int rows, bool differences);
 void sheet_free(struct sheet *sheet);
+/* sheet_end - cuts off what is below the first n rows. */
+void sheet_end(struct sheet *sheet, int n);
+/* sheet_label_length - characters that a label or title has room for. */
+int sheet_label_length(const struct sheet *sheet);
 
 /* sheet_title - writes what a column shows at its top. */
 void sheet_title(struct sheet *sheet, int column, const char *title);
