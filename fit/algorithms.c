@@ -91,14 +91,14 @@ static void set_up_space(struct run *r)
 }
 
 /* Reads the three values of kd or ks at *x, which moves on. */
-static void read_factors(const struct fit_options *o, bool present, const double **x, double value[])
+static void read_factors(const struct fit_options *o, bool specular, const double **x, double value[])
 {
-	const int n = factors(o, present);
+	const int n = factors(o, specular ? o->specular : o->diffuse);
 
 	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
 		const double u = n == 0 ? 0 : (*x)[n == 1 ? 0 : c];
 
-		value[c] = o->unbounded ? u / (1 - u) : u;
+		value[c] = o->unbounded ? u / (1 - u) : u * objective_most(o, specular);
 	}
 	*x += n;
 }
@@ -116,8 +116,8 @@ static double error_at(struct run *r, const double x[], struct shape *shape, str
 	*shape = space_shape(&r->space, inside);
 	if (!r->algorithm->joint)
 		return objective_eval(&r->objective, shape, 1e-6, false, linear);
-	read_factors(o, o->diffuse, &factor, linear->kd);
-	read_factors(o, o->specular, &factor, linear->ks);
+	read_factors(o, false, &factor, linear->kd);
+	read_factors(o, true, &factor, linear->ks);
 	linear->error = objective_error(&r->objective, shape, linear->kd, linear->ks);
 	return linear->error;
 }

@@ -113,9 +113,9 @@ static unsigned bounds_of(const struct fit_result *r, const struct fit_options *
 			bits |= BOUND_K;
 	}
 	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-		if (o->diffuse && (m->kd[c] <= 0 || (!o->unbounded && m->kd[c] >= 1)))
+		if (o->diffuse && (m->kd[c] <= 0 || m->kd[c] >= objective_most(o, false)))
 			bits |= (unsigned)BOUND_KD_R << c;
-		if (o->specular && (m->ks[c] <= 0 || (!o->unbounded && m->ks[c] >= 1)))
+		if (o->specular && (m->ks[c] <= 0 || m->ks[c] >= objective_most(o, true)))
 			bits |= (unsigned)BOUND_KS_R << c;
 	}
 	return bits;

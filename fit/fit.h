@@ -56,11 +56,12 @@ struct fit_options {
 	enum lambda_form lambda; /* of STD and its family; the other NDFs have their exact form only */
 	enum weight weight;
 	enum bins bins;
-	double max_theta;         /* degrees; entries with theta_i or theta_o above it are dropped; 90 = none */
-	bool unbounded;           /* kd, ks in [0, inf) instead of [0, 1] */
-	bool diffuse;             /* false: kd = 0 */
-	bool specular;            /* false: ks = 0, no shape is searched */
-	bool gray;                /* one kd and one ks for the three channels */
+	double max_theta; /* degrees; entries with theta_i or theta_o above it are dropped; 90 = none */
+	bool unbounded;   /* kd, ks in [0, inf) instead of [0, 1] */
+	double blend;     /* in (0, 1): kd in [0, 1 - blend], ks in [0, blend], not unbounded; 0 (default): not so */
+	bool diffuse;     /* false: kd = 0 */
+	bool specular;    /* false: ks = 0, no shape is searched */
+	bool gray;        /* one kd and one ks for the three channels */
 	double ior, gamma, sigma; /* fixed value, or NaN */
 	int starts;               /* extra random starts, which skip the coarsest table; 0 by default */
 	uint64_t seed;

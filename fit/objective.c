@@ -167,8 +167,10 @@ enum status objective_lobe(struct objective *o, const struct shape *shape)
 	return STATUS_OK;
 }
 
-double objective_most(const struct fit_options *options)
+double objective_most(const struct fit_options *options, bool specular)
 {
+	if (options->blend > 0)
+		return specular ? options->blend : 1 - options->blend;
 	return options->unbounded ? 1e6 : 1;
 }
 
@@ -180,11 +182,12 @@ static double diffuse_value(double kd)
 
 void objective_unpin(struct objective *o)
 {
-	const double most = objective_most(o->options);
+	const struct fit_options *options = o->options;
+	const double kd = options->diffuse ? diffuse_value(objective_most(options, false)) : 0;
+	const double ks = options->specular ? objective_most(options, true) : 0;
 
 	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		o->box[c] = (struct objective_box){
-			{0, 0}, {o->options->diffuse ? diffuse_value(most) : 0, o->options->specular ? most : 0}};
+		o->box[c] = (struct objective_box){{0, 0}, {kd, ks}};
 }
 
 void objective_pin(struct objective *o, int channel, bool specular, double value)
@@ -218,7 +221,7 @@ static void start(const struct objective *o, struct l1 problem[], int n_problems
 /* On the bound to the last bit: kd is then the bound itself. */
 static double kd_of(const struct objective *o, double diffuse)
 {
-	const double most = objective_most(o->options);
+	const double most = objective_most(o->options, false);
 
 	return diffuse < diffuse_value(most) ? diffuse * M_PI : most;
 }

@@ -56,8 +56,8 @@ void objective_free(struct objective *objective);
 /* objective_forget - lets the next inner solve begin from nothing, not where the last one ended. */
 void objective_forget(struct objective *objective);
 
-/* objective_most - the upper end of kd and ks: far beyond any material when unbounded. */
-double objective_most(const struct fit_options *options);
+/* objective_most - the upper end of kd, or of ks: far beyond any material when unbounded. */
+double objective_most(const struct fit_options *options, bool specular);
 /* objective_pin - holds kd (or ks) of a channel, of all of them in a gray fit, at a value from now on;
  * objective_unpin - all are free again. */
 void objective_pin(struct objective *objective, int channel, bool specular, double value);

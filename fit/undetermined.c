@@ -266,7 +266,7 @@ static enum status reaches_both_ends(struct inquiry *q, int channel, bool specul
 
 	*reached = status == STATUS_OK;
 	for (int end = 0; end < 2 && *reached; end++) {
-		objective_pin(&o, channel, specular, (int)specular == end ? objective_most(q->options) : 0);
+		objective_pin(&o, channel, specular, (int)specular == end ? objective_most(q->options, specular) : 0);
 		*reached = objective_eval(&o, &q->best, 1e-7, false, &linear) <= limit_of(SEARCH_LEVELS - 1, q->error);
 		q->evaluations++;
 	}
@@ -281,7 +281,7 @@ static enum status factor(struct inquiry *q, int channel, bool specular, bool *u
 	enum { SHARES = 8 };
 	static const double share[2][SHARES] = {{1, 0, 0.6, 0.3, 0.1, 1e-2, 1e-3, 1e-4},
 						{0, 1, 0.6, 0.3, 0.1, 1e-2, 1e-3, 1e-4}};
-	const double most = objective_most(q->options);
+	const double most = objective_most(q->options, specular);
 	double value[SHARES];
 
 	*undetermined = false;
@@ -327,7 +327,7 @@ static void note_rise(struct inquiry *q, struct objective *o, const struct shape
 	objective_unpin(o);
 	objective_eval(o, shape, 1e-4, false, &free);
 	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		objective_pin(o, c, false, objective_most(q->options));
+		objective_pin(o, c, false, objective_most(q->options, false));
 	objective_eval(o, shape, 1e-4, false, &white);
 	q->evaluations += 2;
 	for (int c = 0; c < SAMPLES_CHANNELS; c++) {

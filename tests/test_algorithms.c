@@ -163,13 +163,13 @@ static void the_way_is_the_same(void **state)
 	}
 }
 
-/* Fewer and more parameters: one to search, none, all of them without a bound. */
+/* Fewer and more parameters: one to search, none, all of them without a bound; kd and ks in bounds of their own. */
 static void any_number_of_parameters(void **state)
 {
 	(void)state;
 	for (int i = 1; i < ALGORITHM_COUNT; i++) {
 		const char *name = algorithm_name(algorithm_at(i));
-		for (int variant = 0; variant < 4; variant++) {
+		for (int variant = 0; variant < 5; variant++) {
 			struct trace trace = {.n = 0};
 			struct fit_options o = options_for(algorithm_at(i), &trace);
 			struct found found;
@@ -189,6 +189,8 @@ static void any_number_of_parameters(void **state)
 			}
 			if (variant == 3)
 				o.specular = false;
+			if (variant == 4)
+				o.blend = 0.125;
 			assert_int_equal(run(&o, &found), STATUS_OK);
 			check_trace(&trace, name);
 			check_found(&found, &trace, o.unbounded ? 1e6 : 1, name);
@@ -200,6 +202,10 @@ static void any_number_of_parameters(void **state)
 			}
 			if (variant == 3)
 				check_abs(found.linear.ks[0] + found.linear.ks[1] + found.linear.ks[2], 0, 0, name);
+			for (int c = 0; c < 3 && variant == 4; c++) {
+				check_between(found.linear.kd[c], 0, 0.875, name);
+				check_between(found.linear.ks[c], 0, 0.125, name);
+			}
 			trace_free(&trace);
 		}
 	}

@@ -107,16 +107,17 @@ static struct fit_options options_for(const struct target *target, const struct 
 	return fit;
 }
 
+/* Fits into *model; *value receives the error. */
 static enum status fit_once(const struct fit_context *context, const struct samples *samples,
-			    const struct fit_options *fit, bool gray, struct cook_torrance *model, struct error *error)
+			    const struct fit_options *fit, struct cook_torrance *model, double *value,
+			    struct error *error)
 {
 	struct fit_result result;
 	const enum status status = fit_run(context, samples, fit, &result, error);
 	if (status)
 		return status;
 	*model = result.model;
-	if (gray)
-		model->ks[0] = model->ks[1] = model->ks[2] = (model->ks[0] + model->ks[1] + model->ks[2]) / 3;
+	*value = result.error;
 	fit_result_free(&result);
 	return STATUS_OK;
 }
@@ -126,62 +127,89 @@ static bool fits_blend(const struct cook_torrance *model)
 	return export_max(model->kd) + export_max(model->ks) <= 1;
 }
 
-static enum status refuse_blend(const struct target *target, const struct cook_torrance *model, struct error *error)
-{
-	return error_set(error, STATUS_UNSUPPORTED,
-			 "%s adds up two lobes by weights that make 1: no kd up to %.5g with ks "
-			 "up to %.5g",
-			 target->name, export_max(model->kd), export_max(model->ks));
-}
+enum { BLEND_SCAN = 16, BLEND_STEPS = 7 };
 
-enum { BLEND_STEPS = 8 };
-
-/* A larger index reflects more, and so leaves a smaller ks: the smallest index, nearly, whose best kd and ks add up to
- * no more than 1. */
-static enum status fit_blend(const struct fit_context *context, const struct samples *samples, struct fit_options *fit,
-			     const struct target *target, struct cook_torrance *model, struct error *error)
+/* About the best weight of the lobe, of those that the scan tries: from samples of the table. */
+static enum status scan_blend(const struct fit_context *context, const struct samples *samples, struct fit_options *fit,
+			      double *weight)
 {
-	double low = log(model->n), high = log(FIT_IOR_MAX);
-	struct cook_torrance best = *model;
-	if (model->fresnel == FRESNEL_NONE)
-		return refuse_blend(target, model, error);
-	for (int i = 0; i < BLEND_STEPS; i++) {
-		const double at = i ? 0.5 * (low + high) : high;
-		struct cook_torrance tried;
-		fit->ior = i ? exp(at) : FIT_IOR_MAX;
-		const enum status status = fit_once(context, samples, fit, target->gray, &tried, error);
+	double best = INFINITY;
+	*weight = 0.5;
+	for (int i = 1; i < BLEND_SCAN; i++) {
+		double value;
+		fit->blend = (double)i / BLEND_SCAN;
+		const enum status status = fit_estimate(context, samples, fit, &value);
 		if (status)
 			return status;
-		if (fits_blend(&tried)) {
-			best = tried;
-			high = at;
-		} else if (i == 0) {
-			return refuse_blend(target, model, error);
-		} else {
-			low = at;
+		if (value < best) {
+			best = value;
+			*weight = fit->blend;
 		}
 	}
-	*model = best;
 	return STATUS_OK;
 }
 
-/* Fits the stand-in into export->model. *raised: within a blend. */
+/* With a weight w, kd up to 1 - w and ks up to w; and w by golden section, around the best of the scan. */
+static enum status fit_blend(const struct fit_context *context, const struct samples *samples, struct fit_options *fit,
+			     struct cook_torrance *model, struct error *error)
+{
+	static const double golden = 0.6180339887498949;
+	double middle, best = INFINITY, value[2] = {NAN, NAN};
+	enum status status = scan_blend(context, samples, fit, &middle);
+	if (status)
+		return error_set(error, status, "%s", status_str(status));
+	double low = middle - 1.0 / BLEND_SCAN, high = middle + 1.0 / BLEND_SCAN;
+	for (int i = 0; i < BLEND_STEPS && !status; i++) {
+		const double at[2] = {high - golden * (high - low), low + golden * (high - low)};
+		for (int side = 0; side < 2 && !status; side++) {
+			struct cook_torrance tried;
+			if (!isnan(value[side]))
+				continue;
+			fit->blend = at[side];
+			status = fit_once(context, samples, fit, &tried, &value[side], error);
+			if (!status && value[side] < best) {
+				best = value[side];
+				*model = tried;
+			}
+		}
+		if (value[0] < value[1]) {
+			high = at[1];
+			value[1] = value[0];
+			value[0] = NAN;
+		} else {
+			low = at[0];
+			value[0] = value[1];
+			value[1] = NAN;
+		}
+	}
+	return status;
+}
+
+static void average_specular(struct cook_torrance *model)
+{
+	model->ks[0] = model->ks[1] = model->ks[2] = (model->ks[0] + model->ks[1] + model->ks[2]) / 3;
+}
+
+/* Fits the stand-in into export->model. *blended: as a blend, which the best fit is not. */
 static enum status fit_stand_in(struct export *export, const struct target *target, const struct samples *samples,
-				bool *raised, struct error *error)
+				bool *blended, struct error *error)
 {
 	struct fit_options fit = options_for(target, &export->source);
 	struct fit_context *context = NULL;
+	double value;
 	enum status status = fit_context_new(&context, samples->n_phi_d, &fit);
 	if (status)
 		return error_set(error, status, "%s", status_str(status));
-	status = fit_once(context, samples, &fit, target->gray, &export->model, error);
+	status = fit_once(context, samples, &fit, &export->model, &value, error);
 	if (!status && target->sigma_max > 0 && export->model.ndf.sigma_x > target->sigma_max) {
 		fit.sigma = target->sigma_max;
-		status = fit_once(context, samples, &fit, target->gray, &export->model, error);
+		status = fit_once(context, samples, &fit, &export->model, &value, error);
 	}
-	*raised = !status && target->blend && !fits_blend(&export->model);
-	if (*raised)
-		status = fit_blend(context, samples, &fit, target, &export->model, error);
+	if (!status && target->gray)
+		average_specular(&export->model);
+	*blended = !status && target->blend && !fits_blend(&export->model);
+	if (*blended)
+		status = fit_blend(context, samples, &fit, &export->model, error);
 	if (!status && target->gray && fit.diffuse && gray_specular(samples, &fit, &export->model))
 		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
 	fit_context_free(context);
@@ -262,8 +290,8 @@ enum status stand_in_prepare(struct export *export, const struct target *target,
 	if (!export->stand_in)
 		return check_sigma(export, target, error);
 	const struct samples *samples = stand_in_samples(&export->source, &own);
-	bool raised = false;
-	enum status status = samples ? fit_stand_in(export, target, samples, &raised, error)
+	bool blended = false;
+	enum status status = samples ? fit_stand_in(export, target, samples, &blended, error)
 				     : error_set(error, STATUS_NO_MEMORY, "out of memory");
 	if (!status)
 		status = tell_cost(export, samples, error);
@@ -272,7 +300,6 @@ enum status stand_in_prepare(struct export *export, const struct target *target,
 		status = check_sigma(export, target, error);
 	snprintf(export->why, sizeof export->why, "approximate: %s has%.200s; %s%s was fitted in its place%s",
 		 target->name, lacks, ndf_name(export->model.ndf.class),
-		 is_beckmann(&export->model.ndf) ? "" : " (gamma 2)",
-		 raised ? ", with an index that keeps kd + ks below 1" : "");
+		 is_beckmann(&export->model.ndf) ? "" : " (gamma 2)", blended ? ", with kd + ks up to 1" : "");
 	return status;
 }
