@@ -96,6 +96,12 @@ return sorted(v,1)&&heads[2].ariaSort==='ascending'&&!heads[0].ariaSort?'':v.joi
 click 'table.sortable thead th:nth-child(3) button'
 check 'a second click sorts the other way round' "$rows const v=column(2);\
 return sorted(v,-1)&&heads[2].ariaSort==='descending'?'':v.join()"
+check 'a cell is emptied' "$rows rows[0].cells[2].dataset.v='';return ''"
+for order in ascending descending; do
+	click 'table.sortable thead th:nth-child(3) button'
+	check "what is empty stands below all that is $order" "$rows const v=column(2);\
+return heads[2].ariaSort==='$order'&&v.indexOf('')===v.length-1?'':v.join()"
+done
 click 'table.sortable thead th:first-child button'
 check 'names sort as names' "$rows const v=column(0);return v.every((x,i)=>!i||v[i-1].localeCompare(x)<=0)?'':v.join()"
 

@@ -191,9 +191,9 @@ static void what_is_refused(void **state)
 	stdfit("render m.binary " MODEL " -o no.jpg");
 	expect_error(2, "expected -o FILE.png or -o FILE.pfm");
 	stdfit("render m.binary " MODEL " --light 0,0,0");
-	expect_error(1, "bad value '0,0,0' for --light");
+	expect_error(2, "bad value '0,0,0' for --light");
 	stdfit("render m.binary " MODEL " --light 1,2,3,4,5");
-	expect_error(1, "for --light");
+	expect_error(2, "for --light");
 	stdfit("render m.binary " MODEL " --size 7");
 	expect_error(2, "--size");
 	stdfit("render m.binary --from fits.csv --kd 0.5");
@@ -257,6 +257,12 @@ static void files_are_those_that_were_fitted(void **state)
 	expect_code(0);
 	stdfit("render moved/a.binary n.binary --from moved.csv " QUICK);
 	expect_error(1, "'moved.csv' has no such row: expected one of material 'n'");
+	/* Two of one name: each beside its own. */
+	shell("mkdir -p same/one same/two; cp m.binary same/one/x.binary; cp n.binary same/two/x.binary");
+	stdfit("fit -r same --ndf ggx --sigma 0.2 --ior 1.5 --max-theta 20 -o same.csv");
+	stdfit("render -r same --from same.csv " QUICK);
+	expect_code(0);
+	assert_int_equal(count_lines(last.out), 3);
 	/* A table that does not say where its files are. */
 	shell("sed 's,moved/b.binary,,' moved.csv >nowhere.csv; cp m.binary moved/a.binary");
 	stdfit("compare nowhere.csv --pictures");

@@ -58,14 +58,22 @@ struct chosen {
 	const struct source_model *model[COLUMNS_MAX];
 };
 
+static bool is_of(const struct source_model *model, const char *path)
+{
+	return model->path && !strcmp(model->path, path);
+}
+
+/* Files in several directories can have one name: where there are models of this path, only they are meant. */
 static enum status choose(const struct render *render, const struct model_source *source, const char *path,
 			  struct chosen *chosen, struct error *error)
 {
+	bool by_path = render->from_table;
 	chosen->n = 0;
+	for (size_t i = 0; i < source->n; i++)
+		by_path |= is_of(&source->model[i], path);
 	for (size_t i = 0; i < source->n; i++) {
 		const struct source_model *model = &source->model[i];
-		/* Files in several directories can have one name. */
-		if (render->from_table && (!model->path || strcmp(model->path, path) != 0))
+		if (by_path && !is_of(model, path))
 			continue;
 		if (chosen->n == COLUMNS_MAX)
 			return error_set(error, STATUS_UNSUPPORTED, "'%.150s' has more than %d models", model->material,
@@ -335,6 +343,8 @@ static int collect_and_show(struct render *render)
 	struct error error;
 	int bad = 0;
 	enum status status = lighting_make(options, &render->environment, &error);
+	if (status == STATUS_DOMAIN)
+		return options_usage(COMMAND_RENDER, "%s", error.text);
 	if (!status && render->from_table)
 		status = table_files(options->from, &files, options->cancel, &error);
 	else if (!status)

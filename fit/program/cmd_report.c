@@ -285,7 +285,10 @@ int cmd_report(int argc, char **argv, atomic_bool *cancel)
 	}
 	struct report report = {.options = &options};
 	struct materials materials;
-	if (lighting_make(&options, &report.environment, &error)) {
+	status = lighting_make(&options, &report.environment, &error);
+	if (status == STATUS_DOMAIN)
+		return options_usage(COMMAND_REPORT, "%s", error.text);
+	if (status) {
 		report_error("%s", error.text);
 		return EXIT_FAILED;
 	}

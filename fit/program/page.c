@@ -174,7 +174,7 @@ static void put_material_row(FILE *page, const struct error_grid *grid, const st
 		put_number(page, line->error[n], n == line->best);
 	for (size_t s = 0; s < sizeof shape / sizeof *shape; s++)
 		put_number(page, best ? result_number(best, shape[s]) : NAN, false);
-	put_text_cell(page, best ? best[RESULT_STATUS] : line->material->row[0][RESULT_STATUS], false);
+	put_text_cell(page, best ? best[RESULT_STATUS] : line->material->row[0][RESULT_STATUS], true);
 	fputs("</tr>\n", page);
 }
 

@@ -4,6 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* So that nothing overflows a float, made 2^20 times as bright. */
+#define RADIANCE_MAX 1e30
+
 /* A place on a map, in texels from its upper left corner. */
 struct place {
 	double x, y;
@@ -101,10 +104,11 @@ static enum status check_map(const struct image *map, struct error *why)
 		for (int x = 0; x < map->width; x++)
 			for (int c = 0; c < 3; c++) {
 				const double value = (double)image_at(map, x, y)[c];
-				if (!(value >= 0 && value < INFINITY))
+				if (!(value >= 0 && value <= RADIANCE_MAX))
 					return error_set(why, STATUS_FORMAT,
-							 "expected radiances, found %g in column %d of row %d", value,
-							 x + 1, y + 1);
+							 "expected radiances from 0 to %g, found %g in column %d of "
+							 "row %d",
+							 RADIANCE_MAX, value, x + 1, y + 1);
 			}
 	return STATUS_OK;
 }

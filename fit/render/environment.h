@@ -35,7 +35,7 @@ const char *environment_name(int i);
 
 /* environment_from_map - takes over *map, which is cleared, and gets it ready for sampling.
  * Returns STATUS_FORMAT, *map untouched and `why` filled, where it is not twice as wide as high, has a value that is
- * negative or not finite, or no light; STATUS_NO_MEMORY. */
+ * negative, above 1e30 or not finite, or no light; STATUS_NO_MEMORY. */
 MUST_CHECK enum status environment_from_map(struct environment *environment, struct image *map, struct error *why);
 /* environment_from_lights - n point lights, at most ENVIRONMENT_LIGHTS_MAX, and nothing else. */
 void environment_from_lights(struct environment *environment, const struct light *light, int n);
