@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "search.h"
+#include "valley.h"
 #include <math.h>
 #include <nlopt.h>
 #include <stdlib.h>
@@ -291,6 +292,39 @@ static enum status refine_all(struct search *s, int level, struct space_point *p
 	return status;
 }
 
+/* E below which a table is all but free of noise, and above which a search of such a table is not at its end. */
+#define NOISE_FREE 0.01
+#define NEXT_TO_NOTHING 1e-5
+
+/* Where the search of such a table is stuck on the floor of a valley, leads it on: on the smallest sample, then on the
+ * full table. */
+static enum status follow_valley(struct search *s, struct space_point *best, struct found *found)
+{
+	const bool limited = found->limited;
+	const double stage_best = s->stage_best;
+	struct space_point place = *best;
+	struct objective o;
+	enum status status;
+
+	if (s->space.dims < 2 || best->error > NOISE_FREE || best->error < NEXT_TO_NOTHING)
+		return STATUS_OK;
+	status = objective_init(&o, &s->levels->table[0], s->options, s->class, 1, MASKING_COARSE);
+	if (status != STATUS_OK)
+		return status;
+	begin_stage(s, stages[0].name);
+	status = valley_follow(&s->space, &o, note, s, &place);
+	objective_free(&o);
+	begin_stage(s, stages[SEARCH_LEVELS - 1].name);
+	s->stage_best = stage_best;
+	if (status == STATUS_OK)
+		status = refine_in_turn(s, SEARCH_LEVELS - 1, &place, 1, found);
+	if (status == STATUS_OK && place.error < best->error)
+		*best = place;
+	else
+		found->limited = limited;
+	return status;
+}
+
 /* Ends on the full table: refines the places, then solves for kd and ks of the best one to a certified optimum. */
 static enum status finish_in_turn(struct search *s, struct space_point *place, int count, struct found *found)
 {
@@ -303,6 +337,8 @@ static enum status finish_in_turn(struct search *s, struct space_point *place, i
 	if (s->space.dims > 0)
 		status = refine_in_turn(s, full, place, count, found);
 	qsort(place, (size_t)count, sizeof *place, by_error);
+	if (status == STATUS_OK)
+		status = follow_valley(s, &place[0], found);
 	if (status == STATUS_OK)
 		status = objective_init(&o, &s->levels->table[full], s->options, s->class, s->options->threads,
 					MASKING_FINE);

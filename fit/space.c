@@ -92,16 +92,17 @@ void space_init(struct space *s, const struct fit_options *o, const struct ndf_c
 		add_dim(s, COORDINATE_K, 0, FIT_K_MAX, &scan_k);
 }
 
+double space_value(const struct space *s, int d, double x)
+{
+	return fmin(fmax(from_coordinate(s->coordinate[d], s->least_gamma, x), s->lowest[d]), s->highest[d]);
+}
+
 struct shape space_shape(const struct space *s, const double x[])
 {
 	struct shape shape = s->fixed;
 
-	for (int d = 0; d < s->dims; d++) {
-		const enum coordinate c = s->coordinate[d];
-		const double value = from_coordinate(c, s->least_gamma, x[d]);
-
-		*parameter(&shape, c) = fmin(fmax(value, s->lowest[d]), s->highest[d]);
-	}
+	for (int d = 0; d < s->dims; d++)
+		*parameter(&shape, s->coordinate[d]) = space_value(s, d, x[d]);
 	return shape;
 }
 

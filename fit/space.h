@@ -42,8 +42,9 @@ void space_init(struct space *space, const struct fit_options *options, const st
 /* space_shape - the shape at a point; space_place - the reverse, values out of range moved to the nearest end. */
 struct shape space_shape(const struct space *space, const double x[]);
 void space_place(const struct space *space, const struct shape *shape, double x[]);
-/* space_x - dimension d's coordinate of a value of its parameter. */
+/* space_x - dimension d's coordinate of a value of its parameter; space_value - the reverse. */
 double space_x(const struct space *space, int d, double value);
+double space_value(const struct space *space, int d, double x);
 /* space_pin - takes dimension d out: its parameter has this value from now on, gamma = inf included. */
 void space_pin(struct space *space, int d, double value);
 
