@@ -225,13 +225,32 @@ static bool add_cut(struct l1 *l1, double error, const double slope[2])
 	return false;
 }
 
-/* At the box's lower corner, kd = ks = 0, the slopes are the sums of the terms: a first guess gives the diffuse term
- * and the lobe shares of what is measured. */
+/* At kd = ks = 0 the error is all that is measured, and the slopes are the sums of the terms. A term that comes to more
+ * than twice as much is worse than none. Where the box goes far beyond that, the error at its far end would have no digit
+ * left for what is sought: there it is cut off. */
+static void narrow(struct l1 *l1, double error, const double slope[2])
+{
+	bool narrowed = false;
+
+	for (int a = 0; a < 2; a++) {
+		const double most = slope[a] < 0 ? -2 * error / slope[a] : INFINITY;
+
+		if (most < L1_FAR * l1->hi[a]) {
+			l1->hi[a] = most;
+			narrowed = true;
+		}
+	}
+	if (narrowed)
+		l1->n_corners = clip_level(l1, l1->corner, box_corners(l1, l1->corner), l1->error);
+}
+
+/* There, too, a first guess gives the diffuse term and the lobe shares of what is measured. */
 static void guess(struct l1 *l1, double error, const double slope[2])
 {
 	static const double share[2] = {0.3, 0.5};
 
 	l1->cold = false;
+	narrow(l1, error, slope);
 	for (int a = 0; a < 2; a++)
 		l1->x[a] = slope[a] < 0 ? (double)(float)clamp(-share[a] * error / slope[a], l1->lo[a], l1->hi[a])
 					: l1->lo[a];

@@ -20,6 +20,9 @@
 
 enum { L1_CUTS = 64, L1_CORNERS = L1_CUTS + 8 };
 
+/* A minimum nearer to 0 than this share of the box is found to full accuracy only if the solver begins without `start`. */
+#define L1_FAR 1e-10
+
 struct l1_cut {
 	double x[2], error, slope[2];
 };

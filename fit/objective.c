@@ -199,6 +199,14 @@ void objective_pin(struct objective *o, int channel, bool specular, double value
 			o->box[c].lo[specular] = o->box[c].hi[specular] = at;
 }
 
+/* The mean measurement of a problem. */
+static double mean_measured(const struct objective *o, int p)
+{
+	const struct table *t = o->table;
+
+	return (o->options->gray ? (t->sum[0] + t->sum[1] + t->sum[2]) / SAMPLES_CHANNELS : t->sum[p]) / t->sum_w;
+}
+
 /* With one kd and ks for all channels there is one problem, their sum; else one a channel. */
 static void start(const struct objective *o, struct l1 problem[], int n_problems, double tolerance, bool certify)
 {
@@ -208,7 +216,8 @@ static void start(const struct objective *o, struct l1 problem[], int n_problems
 		const struct objective_box *box = &o->box[p];
 		const double scale = n_problems == 1 ? sum[0] + sum[1] + sum[2] : sum[p];
 		const double known[2] = {o->start.kd[p] / M_PI, o->start.ks[p]};
-		const bool cold = isnan(o->start.kd[0]), at_zero = box->lo[0] == 0 && box->lo[1] == 0;
+		const bool faint = sum[p] > 0 && mean_measured(o, p) < L1_FAR * objective_most(o->options);
+		const bool cold = isnan(o->start.kd[0]) || faint, at_zero = box->lo[0] == 0 && box->lo[1] == 0;
 
 		l1_start(&problem[p], box->lo, box->hi,
 			 !cold     ? known
@@ -249,10 +258,7 @@ static void finish(const struct objective *o, const struct l1 problem[], int n_p
 /* A fiftieth of the mean measurement: below it, how near a residual is to 0 is told by the data, not by the model. */
 static double window_floor(const struct objective *o, int p)
 {
-	const struct table *t = o->table;
-
-	return 0.02 * (o->options->gray ? (t->sum[0] + t->sum[1] + t->sum[2]) / SAMPLES_CHANNELS : t->sum[p]) /
-	       t->sum_w;
+	return 0.02 * mean_measured(o, p);
 }
 
 double objective_eval(struct objective *o, const struct shape *shape, double tolerance, bool certify,

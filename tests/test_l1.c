@@ -153,6 +153,33 @@ static void all_zero_data_end_at_zero(void **state)
 	check_abs(l1.error, 0, 1e-6, "error");
 }
 
+/* The whole problem times 2^-60, in the same box: the same minimum, times 2^-60. */
+static void finds_what_is_next_to_nothing_beside_the_box(void **state)
+{
+	unsigned seed = 11;
+
+	(void)state;
+	for (int trial = 0; trial < 100; trial++) {
+		struct problem p = {.n = 3 + trial % (TERMS - 3), .hi = {1, 1}};
+		struct l1 l1, faint;
+		double slope[2];
+
+		for (int n = 0; n < p.n; n++) {
+			p.a[n] = 0.3 + 0.1 * uniform(&seed);
+			p.s[n] = pow(10, 4 * uniform(&seed) - 2);
+			p.m[n] = (0.2 * p.a[n] + 0.1 * p.s[n]) * (0.4 + 1.2 * uniform(&seed));
+		}
+		const double scale = value(&p, 0, 0, slope);
+
+		solve(&p, NULL, 1e-7, &l1);
+		for (int n = 0; n < p.n; n++)
+			p.m[n] *= 0x1p-60;
+		solve(&p, NULL, 1e-7, &faint);
+		check_abs(faint.error * 0x1p60, l1.error, 3e-7 * scale, "minimum of the faint problem");
+		assert_true(l1_lower_bound(&faint) * 0x1p60 <= l1.error + 3e-7 * scale);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -160,6 +187,7 @@ int main(void)
 		cmocka_unit_test(stays_in_the_box),
 		cmocka_unit_test(one_variable_is_a_weighted_median),
 		cmocka_unit_test(all_zero_data_end_at_zero),
+		cmocka_unit_test(finds_what_is_next_to_nothing_beside_the_box),
 	};
 
 	return cmocka_run_group_tests_name("l1", tests, NULL, NULL);

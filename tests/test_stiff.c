@@ -115,6 +115,21 @@ static struct samples rough(void)
 	return table_of(&m);
 }
 
+/* E falls along a narrow, curved way in sigma, gamma and n. */
+static struct samples curved_valley(void)
+{
+	const struct cook_torrance m = model_of("std", 0.19, 2.2, 1.006, 0.25, 0.25);
+
+	return table_of(&m);
+}
+
+static struct samples curved_valley_of_gamma(void)
+{
+	const struct cook_torrance m = model_of("std", 0.63, 10, 1.09, 0.05, 0.1);
+
+	return table_of(&m);
+}
+
 static struct samples almost_lambertian(void)
 {
 	const struct cook_torrance m = model_of("ggx", 0.3, 2, 1.5, 0.6, 1e-3);
@@ -251,6 +266,8 @@ static const struct stiff {
 	{"n 1.01", faint_index, 1e-5, 0, 0, true},
 	{"n 70", high_index, 1e-5, 0, 0, true},
 	{"sigma 3.5", rough, 1e-5, 0, 0, true},
+	{"curved valley, n 1.006", curved_valley, 1e-5, 0, 0, true},
+	{"curved valley, gamma 10", curved_valley_of_gamma, 1e-5, 0, 0, true},
 	{"almost Lambertian", almost_lambertian, 1e-6, 0, 0, true},
 	{"noisy Lambertian", noisy_lambertian, 0.3, SHAPE | KS, 0, false},
 	{"a lobe of weight 1e-6", faint_lobe, 1e-6, 0, 0, true},
@@ -338,6 +355,33 @@ static void stiff_tables(void **state)
 	}
 }
 
+static double faint(double value, double random)
+{
+	(void)random;
+	return value * 0x1p-70;
+}
+
+/* A table times 2^-70 has the same E, by kd and ks that are as much smaller. */
+static void any_unit_of_the_data(void **state)
+{
+	struct fit_options options = options_for("ggx");
+	struct samples samples = noise();
+	struct fit_result r, same;
+
+	(void)state;
+	run_fit(&samples, &options, &r);
+	change_all(&samples, faint);
+	run_fit(&samples, &options, &same);
+	check_rel(same.error, r.error, 1e-6, "E of a faint table");
+	check_rel(same.model.kd[0] * 0x1p70, r.model.kd[0], 1e-3, "its kd");
+	check_rel(same.model.ks[0] * 0x1p70, r.model.ks[0], 1e-3, "its ks");
+	options.specular = false;
+	run_fit(&samples, &options, &same);
+	check_between(same.lower_bound, 0, same.error + rounding, "Lambert alone, certified");
+	check_between(same.error, r.error, 0.999, "Lambert alone");
+	samples_free(&samples);
+}
+
 /* Half of the values move to the next float. */
 static void a_rounding_of_the_data(void **state)
 {
@@ -382,6 +426,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(stiff_tables),
 		cmocka_unit_test(a_rounding_of_the_data),
+		cmocka_unit_test(any_unit_of_the_data),
 		cmocka_unit_test(only_what_is_free_is_named),
 	};
 
