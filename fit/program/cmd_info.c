@@ -87,6 +87,14 @@ static void count_entries(const struct samples *samples, enum bins bins, float *
 			}
 }
 
+/* In double: the sum of two floats may be none. Reorders the values. */
+static double median(float *value, size_t n)
+{
+	const double below = (double)gsl_stats_float_select(value, 1, n, (n - 1) / 2);
+
+	return below / 2 + (double)gsl_stats_float_select(value, 1, n, n / 2) / 2;
+}
+
 static enum status take_census(const struct samples *samples, enum bins bins, struct census *census)
 {
 	const size_t n = samples_count(samples);
@@ -103,7 +111,7 @@ static enum status take_census(const struct samples *samples, enum bins bins, st
 			continue;
 		range->min = (double)gsl_stats_float_min(value[c], 1, census->valid_above);
 		range->max = (double)gsl_stats_float_max(value[c], 1, census->valid_above);
-		range->median = gsl_stats_float_median(value[c], 1, census->valid_above); /* reorders */
+		range->median = median(value[c], census->valid_above);
 	}
 	free(values);
 	return STATUS_OK;
