@@ -216,7 +216,7 @@ static void start(const struct objective *o, struct l1 problem[], int n_problems
 		const struct objective_box *box = &o->box[p];
 		const double scale = n_problems == 1 ? sum[0] + sum[1] + sum[2] : sum[p];
 		const double known[2] = {o->start.kd[p] / M_PI, o->start.ks[p]};
-		const bool faint = sum[p] > 0 && mean_measured(o, p) < L1_FAR * objective_most(o->options);
+		const bool faint = sum[p] > 0 && mean_measured(o, p) < L1_FAR * fmax(box->hi[0], box->hi[1]);
 		const bool cold = isnan(o->start.kd[0]) || faint, at_zero = box->lo[0] == 0 && box->lo[1] == 0;
 
 		l1_start(&problem[p], box->lo, box->hi,
