@@ -241,10 +241,12 @@ static void rows_and_bad_rows(void **state)
 	assert_true(cell(&table, 7, IN_VISIBLE) > 0);
 	csv_table_free(&table);
 	assert_int_equal(count_lines(last.err), 6);
-	static const char *const parts[] = {
-		"stdfit: row 2: std does not take these parameters\n",       "stdfit: row 3: there is no NDF 'nix'\n",
-		"stdfit: row 4: bad sigma 'abc': expected a number\n",       "stdfit: row 5: theta is empty\n",
-		"stdfit: row 6: bad theta: expected degrees from 0 to 90\n", "stdfit: row 7: ggx has no gamma\n"};
+	static const char *const parts[] = {"stdfit: row 2: bad gamma 1.5: std takes one above 1.5, up to inf\n",
+					    "stdfit: row 3: there is no NDF 'nix'\n",
+					    "stdfit: row 4: bad sigma 'abc': expected a number\n",
+					    "stdfit: row 5: theta is empty\n",
+					    "stdfit: row 6: bad theta: expected degrees from 0 to 90\n",
+					    "stdfit: row 7: ggx has no gamma\n"};
 	for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
 		expect_part(last.err, parts[i], __LINE__);
 	shell("exec \"$STDFIT\" ndf - --json <in.csv");
@@ -442,24 +444,29 @@ static void refusals(void **state)
 		{"ndf", 2, "expected one NAME"},
 		{"ndf std ggx --theta 1", 2, "expected one NAME"},
 		{"ndf std --sigma 0.2 --gamma 2", 2, "expected --theta"},
-		{"ndf std --sigma 0.2 --gamma 2 --theta 1:2", 1, "bad angles '1:2'"},
-		{"ndf std --sigma 0.2 --gamma 2 --theta 0:91:1", 1, "bad angles"},
-		{"ndf std --sigma 0.2 --gamma 2 --theta 0:90:1e-9", 1, "bad angles"},
-		{"ndf std --sigma 0.2 --gamma 2 --theta 1,,2", 1, "bad angles"},
-		{"ndf nix --sigma 0.2 --theta 1", 1, "no NDF 'nix'"},
-		{"ndf std --sigma 0.2 --theta 1", 1, "std needs gamma"},
-		{"ndf gtr --sigma 0.2,0.3 --gamma 2 --theta 1", 1, "gtr does not take"},
-		{"ndf std --sigma 0.2 --gamma 1.7 --lambda integer --theta 1", 1, "no Lambda integer"},
-		{"ndf low --params 'B=1;Q=2' --theta 1", 1, "bad parameter 'Q=2'"},
-		{"ndf low --params B=1 --theta 1", 1, "low needs C"},
-		{"ndf ellipsoid --theta 1", 1, "alpha_x"},
-		{"ndf pl --params D0=1 --theta 1", 1, "D1 is missing"},
+		{"ndf std --sigma 0.2 --gamma 2 --theta 1:2", 2, "bad angles '1:2'"},
+		{"ndf std --sigma 0.2 --gamma 2 --theta 0:91:1", 2, "bad angles"},
+		{"ndf std --sigma 0.2 --gamma 2 --theta 0:90:1e-9", 2, "bad angles"},
+		{"ndf std --sigma 0.2 --gamma 2 --theta 1,,2", 2, "bad angles"},
+		{"ndf nix --sigma 0.2 --theta 1", 2, "no NDF 'nix'"},
+		{"ndf std --sigma 0.2 --theta 1", 2, "std needs gamma"},
+		{"ndf gtr --sigma 0.2,0.3 --gamma 2 --theta 1", 2, "gtr takes one sigma"},
+		{"ndf std --sigma 0.2 --gamma 1.5 --theta 1", 2, "bad gamma 1.5: std takes one above 1.5, up to inf"},
+		{"ndf ggx --sigma 0.2,0 --theta 1", 2, "bad sigma 0: ggx takes one from 1e-50, up to 1e+50"},
+		{"ndf low --sigma 0.2 --gamma 0 --theta 1", 2, "bad C 0: low takes one above 0"},
+		{"ndf low --params 'B=-1;C=2' --theta 1", 2, "bad B -1: low takes one above 0"},
+		{"ndf gtr --sigma 1e40 --gamma 900 --theta 1", 2, "gtr does not take these parameters"},
+		{"ndf std --sigma 0.2 --gamma 1.7 --lambda integer --theta 1", 2, "no Lambda integer"},
+		{"ndf low --params 'B=1;Q=2' --theta 1", 2, "bad parameter 'Q=2'"},
+		{"ndf low --params B=1 --theta 1", 2, "low needs C"},
+		{"ndf ellipsoid --theta 1", 2, "alpha_x"},
+		{"ndf pl --params D0=1 --theta 1", 2, "D1 is missing"},
 		{"ndf - --theta 1", 2, "--theta means nothing"},
 		{"ndf --from x.csv --sigma 0.2 --theta 1", 2, "--sigma and --from"},
 		{"ndf --from none.csv --theta 1", 1, "none.csv"},
-		{"sample gtr --sigma 0.2 --gamma 2 --theta-i 3 --sampling visible", 1, "gtr has no --sampling visible"},
-		{"sample std --sigma 0.2 --gamma 2 --sampling visible", 1, "need --theta-i"},
-		{"sample ellipsoid --sigma 0.2 --theta-i 3 --sampling ndf", 1, "ellipsoid has no --sampling ndf"},
+		{"sample gtr --sigma 0.2 --gamma 2 --theta-i 3 --sampling visible", 2, "gtr has no --sampling visible"},
+		{"sample std --sigma 0.2 --gamma 2 --sampling visible", 2, "need --theta-i"},
+		{"sample ellipsoid --sigma 0.2 --theta-i 3 --sampling ndf", 2, "ellipsoid has no --sampling ndf"},
 		{"sample std --sigma 0.2 --gamma 2 --count 0", 2, "--count"},
 	};
 

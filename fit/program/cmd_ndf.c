@@ -233,6 +233,6 @@ int cmd_ndf(int argc, char **argv, atomic_bool *cancel)
 	struct csv_table output = csv_table_make(columns, NDF_COLUMNS);
 	const enum status status =
 		input ? run_input(&options, &output, &bad, &error) : run_options(&options, &output, &error);
-	code = options_end(&options, status, &error, &output, report_table);
+	code = distribution_end(&options, status, &error, &output);
 	return code == EXIT_DONE && bad ? EXIT_FAILED : code;
 }

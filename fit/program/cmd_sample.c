@@ -102,5 +102,5 @@ int cmd_sample(int argc, char **argv, atomic_bool *cancel)
 		return code;
 	struct csv_table output = csv_table_make(columns, SAMPLE_COLUMNS);
 	const enum status status = run(&options, &output, &error);
-	return options_end(&options, status, &error, &output, report_table);
+	return distribution_end(&options, status, &error, &output);
 }

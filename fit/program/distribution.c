@@ -51,6 +51,18 @@ static enum status does_not_take(const char *name, struct error *error)
 	return error_set(error, STATUS_DOMAIN, "%s does not take these parameters", name);
 }
 
+/* Why a class does not take parameters, value[i] for ndf_param_at(class, i); NaN: not looked at. */
+static enum status refuse_params(const struct ndf_class *class, const double value[], struct error *error)
+{
+	for (int i = 0; ndf_param_at(class, i); i++) {
+		const struct ndf_param *p = ndf_param_at(class, i);
+		if (value[i] < p->min || (value[i] == p->min && !p->min_included) || value[i] > p->max)
+			return error_set(error, STATUS_DOMAIN, "bad %s %.6g: %s takes one %s %g, up to %g", p->name,
+					 value[i], ndf_name(class), p->min_included ? "from" : "above", p->min, p->max);
+	}
+	return does_not_take(ndf_name(class), error);
+}
+
 /* pl */
 
 static bool is_node(const char *name, const void *context)
@@ -134,7 +146,21 @@ static enum status from_params(const struct distribution_words *words, const str
 		if (isnan(value[i]))
 			return error_set(error, STATUS_DOMAIN, "%s needs %s", ndf_name(class), name);
 	}
-	return ndf_init_params(ndf, class, value) ? does_not_take(ndf_name(class), error) : STATUS_OK;
+	return ndf_init_params(ndf, class, value) ? refuse_params(class, value, error) : STATUS_OK;
+}
+
+/* The same for the words sigma, sigma_y and gamma, which is C of low. */
+static enum status refuse_words(const struct ndf_class *class, double sigma_x, double sigma_y, double gamma,
+				struct error *error)
+{
+	const double sigma = sigma_x >= NDF_SIGMA_MIN && sigma_x <= NDF_SIGMA_MAX ? sigma_y : sigma_x;
+	double value[NDF_PARAMS_MAX];
+	for (int i = 0; ndf_param_at(class, i); i++) {
+		const char *name = ndf_param_at(class, i)->name;
+		const bool shape = !strcmp(name, "gamma") || !strcmp(name, "C");
+		value[i] = !strcmp(name, "sigma") ? sigma : shape ? gamma : NAN;
+	}
+	return refuse_params(class, value, error);
 }
 
 static enum status make_class(const struct distribution_words *words, const struct ndf_class *class, double sigma_x,
@@ -153,7 +179,11 @@ static enum status make_class(const struct distribution_words *words, const stru
 		return error_set(error, STATUS_DOMAIN, "%s needs gamma", ndf_name(class));
 	if (!ndf_has_gamma(class) && !isnan(gamma))
 		return error_set(error, STATUS_DOMAIN, "%s has no gamma", ndf_name(class));
-	return ndf_init(ndf, class, sigma_x, sigma_y, gamma) ? does_not_take(ndf_name(class), error) : STATUS_OK;
+	if (sigma_x != sigma_y && !ndf_has_anisotropy(class))
+		return error_set(error, STATUS_DOMAIN, "%s takes one sigma, the same in all directions",
+				 ndf_name(class));
+	return ndf_init(ndf, class, sigma_x, sigma_y, gamma) ? refuse_words(class, sigma_x, sigma_y, gamma, error)
+							     : STATUS_OK;
 }
 
 static enum status set_lambda(const char *word, struct ndf *ndf, struct error *error)

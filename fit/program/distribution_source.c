@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "distribution_source.h"
+#include "report.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -95,4 +96,13 @@ void distribution_source_free(struct distribution_source *source)
 	free(source->item);
 	model_source_free(&source->models);
 	*source = (struct distribution_source){0};
+}
+
+int distribution_end(const struct options *options, enum status status, const struct error *error,
+		     struct csv_table *table)
+{
+	if (status != STATUS_DOMAIN && status != STATUS_UNSUPPORTED)
+		return options_end(options, status, error, table, report_table);
+	csv_table_free(table);
+	return options_usage(options->command, "%s", error->text);
 }
