@@ -194,6 +194,7 @@ static void refusals(void **state)
 	refuse("p-1.csv p-2.csv p-3.csv all/a.binary all/b.binary", "which is not among the files given");
 	refuse("p-1.csv missing.csv", "cannot read 'missing.csv': No such file or directory");
 	refuse("p-1.csv p-2.csv p-3.csv all elsewhere", "no row of 'elsewhere'");
+	refuse("p-1.csv p-2.csv p-3.csv ./all", "is of 'all/B.binary': expected the paths that were fitted");
 	write_text("foreign.csv", "name,height\nme,180\n");
 	refuse("p-1.csv foreign.csv", "cannot merge 'foreign.csv': expected the columns of stdfit");
 	shell("sed 's/$/,x/' p-2.csv >wider.csv");

@@ -233,6 +233,37 @@ static enum status check_ndfs(const struct merge *m, struct error *error)
 	return STATUS_OK;
 }
 
+static const char *base_name(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	return slash ? slash + 1 : path;
+}
+
+static bool is_given(const struct files *files, const char *path)
+{
+	for (size_t f = 0; f < files->n; f++)
+		if (!strcmp(files->path[f], path))
+			return true;
+	return false;
+}
+
+/* A file without a row: its share is not there, or the shares know it by another path. */
+static enum status no_row(const struct merge *m, const struct files *files, const char *path, struct error *error)
+{
+	char name[TEXT_QUOTE_SIZE / 2], other[TEXT_QUOTE_SIZE / 2], there[PLACE_SIZE];
+	text_quote(path, name, sizeof name);
+	for (size_t i = 0; i < m->n; i++) {
+		const char *fitted = m->part[i].cell[RESULT_PATH];
+		if (strcmp(base_name(fitted), base_name(path)) != 0 || is_given(files, fitted))
+			continue;
+		text_quote(fitted, other, sizeof other);
+		return error_set(error, STATUS_NO_DATA,
+				 "no row of '%s', but %s is of '%s': expected the paths that were fitted", name,
+				 place(there, &m->part[i]), other);
+	}
+	return error_set(error, STATUS_NO_DATA, "no row of '%s': its share is missing or did not end", name);
+}
+
 /* The rows are those of these files, which are in order, and of no others. */
 static enum status check_files(const struct merge *m, const struct files *files, struct error *error)
 {
@@ -242,11 +273,8 @@ static enum status check_files(const struct merge *m, const struct files *files,
 		const int order = i == m->n       ? -1
 				  : f == files->n ? 1
 						  : strcmp(files->path[f], m->part[i].cell[RESULT_PATH]);
-		if (order < 0) {
-			text_quote(files->path[f], name, sizeof name);
-			return error_set(error, STATUS_NO_DATA, "no row of '%s': its share is missing or did not end",
-					 name);
-		}
+		if (order < 0)
+			return no_row(m, files, files->path[f], error);
 		if (order > 0) {
 			text_quote(m->part[i].cell[RESULT_PATH], name, sizeof name);
 			return error_set(error, STATUS_FORMAT, "%s: of '%s', which is not among the files given",

@@ -3,6 +3,7 @@
 #include "csv.h"
 #include "text_quote.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <limits.h>
@@ -255,7 +256,7 @@ static enum status parse_int(const struct option_spec *spec, const char *text, i
 	char *end;
 	errno = 0;
 	const long x = strtol(text, &end, 10);
-	if (end == text || *end || errno || !in_range(spec, (double)x))
+	if (end == text || isspace((unsigned char)*text) || *end || errno || !in_range(spec, (double)x))
 		return expected_range(spec, error);
 	*value = (int)x;
 	return STATUS_OK;
