@@ -16,19 +16,23 @@ static inline double vec3_dot(struct vec3 a, struct vec3 b)
 	return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/* Their results have names because C++ knows no compound literals. */
 static inline struct vec3 vec3_add(struct vec3 a, struct vec3 b)
 {
-	return (struct vec3){a.x + b.x, a.y + b.y, a.z + b.z};
+	const struct vec3 sum = {a.x + b.x, a.y + b.y, a.z + b.z};
+	return sum;
 }
 
 static inline struct vec3 vec3_sub(struct vec3 a, struct vec3 b)
 {
-	return (struct vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+	const struct vec3 difference = {a.x - b.x, a.y - b.y, a.z - b.z};
+	return difference;
 }
 
 static inline struct vec3 vec3_scale(struct vec3 a, double s)
 {
-	return (struct vec3){a.x * s, a.y * s, a.z * s};
+	const struct vec3 scaled = {a.x * s, a.y * s, a.z * s};
+	return scaled;
 }
 
 /* Neither over- nor underflows before the length itself does. */
@@ -41,7 +45,8 @@ static inline double vec3_length(struct vec3 a)
 static inline struct vec3 vec3_unit(struct vec3 a)
 {
 	const double length = vec3_length(a);
-	return (struct vec3){a.x / length, a.y / length, a.z / length};
+	const struct vec3 unit = {a.x / length, a.y / length, a.z / length};
+	return unit;
 }
 
 /* sincos_deg - sine and cosine of an angle in degrees, each within 0.51 ulp for the double given (1 ulp where

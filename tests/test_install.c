@@ -56,7 +56,7 @@ static void headers_stand_alone(void **state)
 	    0);
 	run("command -v ${cxx%% *} || exit 0\n"
 	    "for h in usr/include/stdfit/*.h; do echo \"#include <stdfit/${h##*/}>\" |"
-	    " $cxx -std=c++11 -Wall -Wextra -Werror -Iusr/include -fsyntax-only -x c++ - || exit 1; done\n"
+	    " $cxx -std=c++11 -Wall -Wextra -Wpedantic -Werror -Iusr/include -fsyntax-only -x c++ - || exit 1; done\n"
 	    "echo '#include <stdfit/stdfit.h>\nint main() { return !ndf_find(\"std\"); }' >a.cc\n"
 	    "$cxx -o a a.cc $(pkg-config --cflags --libs stdfit) && ./a",
 	    0);
