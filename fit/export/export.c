@@ -76,6 +76,10 @@ void export_describe(const struct export *export, char text[EXPORT_TEXT])
 	int used;
 	if (export->source.material)
 		text_quote(export->source.material, name, sizeof name);
+	if (!(export_max(model->ks) > 0)) {
+		snprintf(text, EXPORT_TEXT, "%s: Lambert alone, no specular term", name);
+		return;
+	}
 	used = snprintf(text, EXPORT_TEXT, "%s: %s", name, ndf_name(model->ndf.class));
 	for (int i = 0; ndf_param_at(model->ndf.class, i); i++)
 		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " %s %s",

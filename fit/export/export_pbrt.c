@@ -26,10 +26,12 @@ static enum status pbrt_prepare(struct export *export, struct error *error)
 	if (export_max(export->model.kd) > 1)
 		return error_set(error, STATUS_UNSUPPORTED, "pbrt-v4 has no reflectance above 1: kd is up to %.5g",
 				 export_max(export->model.kd));
-	return export->stand_in
-		       ? STATUS_OK
-		       : export_as_it_is(export, "the model itself, in expectation: pbrt-v4 takes one of the two lobes "
-						 "at random");
+	if (export->stand_in)
+		return STATUS_OK;
+	if (!(export_max(export->model.ks) > 0))
+		return export_as_it_is(export, "the model itself");
+	return export_as_it_is(export,
+			       "the model itself, in expectation: pbrt-v4 takes one of the two lobes at random");
 }
 
 static void write_diffuse(FILE *file, const double kd[3], double weight)

@@ -84,15 +84,24 @@ const struct samples *stand_in_samples(const struct export_source *source, struc
 		       : own;
 }
 
+/* The model's own distribution if the target has it, else all that it has. */
+static void choose_ndfs(const struct target *target, const struct cook_torrance *model, struct fit_options *fit)
+{
+	struct ndf plain;
+	const bool known = plain_ndf(&model->ndf, &plain), beckmann = known && is_beckmann(&plain);
+	fit->n_ndf = 0;
+	if (!(target->beckmann && beckmann))
+		fit->ndf[fit->n_ndf++] = ndf_find("ggx");
+	if (target->beckmann && (beckmann || !known))
+		fit->ndf[fit->n_ndf++] = ndf_find("beckmann");
+}
+
 /* The options of the fit: the source's data and weight, the target's lobe. */
 static struct fit_options options_for(const struct target *target, const struct export_source *source)
 {
 	const struct cook_torrance *model = source->model;
 	struct fit_options fit = *source->fit;
-	struct ndf plain;
-	const bool beckmann = target->beckmann && plain_ndf(&model->ndf, &plain) && is_beckmann(&plain);
-	fit.ndf[0] = ndf_find(beckmann ? "beckmann" : "ggx");
-	fit.n_ndf = 1;
+	choose_ndfs(target, model, &fit);
 	fit.gaf = target->gaf;
 	fit.fresnel = (target->fresnel & 1u << model->fresnel) ? model->fresnel : target->instead;
 	fit.lambda = LAMBDA_EXACT;
@@ -107,19 +116,22 @@ static struct fit_options options_for(const struct target *target, const struct 
 	return fit;
 }
 
-/* Fits into *model; *value receives the error. */
+/* The best of the options' distributions, into *model; *value receives its error. */
 static enum status fit_once(const struct fit_context *context, const struct samples *samples,
 			    const struct fit_options *fit, struct cook_torrance *model, double *value,
 			    struct error *error)
 {
-	struct fit_result result;
-	const enum status status = fit_run(context, samples, fit, &result, error);
-	if (status)
-		return status;
-	*model = result.model;
-	*value = result.error;
-	fit_result_free(&result);
-	return STATUS_OK;
+	struct fit_result result[FIT_NDFS_MAX];
+	const enum status status = fit_run(context, samples, fit, result, error);
+	*value = INFINITY;
+	for (int i = 0; i < fit->n_ndf && !status; i++) {
+		if (result[i].error < *value) {
+			*model = result[i].model;
+			*value = result[i].error;
+		}
+		fit_result_free(&result[i]);
+	}
+	return status;
 }
 
 static bool fits_blend(const struct cook_torrance *model)
@@ -127,26 +139,31 @@ static bool fits_blend(const struct cook_torrance *model)
 	return export_max(model->kd) + export_max(model->ks) <= 1;
 }
 
-enum { BLEND_SCAN = 16, BLEND_STEPS = 7 };
+enum { BLEND_SCAN = 16, BLEND_STEPS = 6 };
 
-/* About the best weight of the lobe, of those that the scan tries: from samples of the table. */
-static enum status scan_blend(const struct fit_context *context, const struct samples *samples, struct fit_options *fit,
-			      double *weight)
+/* About the best weight of the lobe and the best of the options' distributions, as the only one of *fit: from samples of
+ * the table. */
+static enum status scan_blend(const struct fit_context *context, const struct samples *samples, struct fit_options *fit)
 {
+	struct fit_options tried = *fit;
 	double best = INFINITY;
-	*weight = 0.5;
-	for (int i = 1; i < BLEND_SCAN; i++) {
-		double value;
-		fit->blend = (double)i / BLEND_SCAN;
-		const enum status status = fit_estimate(context, samples, fit, &value);
-		if (status)
-			return status;
-		if (value < best) {
-			best = value;
-			*weight = fit->blend;
+	enum status status = STATUS_OK;
+	tried.n_ndf = 1;
+	tried.blend = 0.5;
+	struct fit_options chosen = tried;
+	for (int n = 0; n < fit->n_ndf; n++)
+		for (int i = 1; i < BLEND_SCAN && !status; i++) {
+			double value;
+			tried.ndf[0] = fit->ndf[n];
+			tried.blend = (double)i / BLEND_SCAN;
+			status = fit_estimate(context, samples, &tried, &value);
+			if (!status && value < best) {
+				best = value;
+				chosen = tried;
+			}
 		}
-	}
-	return STATUS_OK;
+	*fit = chosen;
+	return status;
 }
 
 /* With a weight w, kd up to 1 - w and ks up to w; and w by golden section, around the best of the scan. */
@@ -154,11 +171,11 @@ static enum status fit_blend(const struct fit_context *context, const struct sam
 			     struct cook_torrance *model, struct error *error)
 {
 	static const double golden = 0.6180339887498949;
-	double middle, best = INFINITY, value[2] = {NAN, NAN};
-	enum status status = scan_blend(context, samples, fit, &middle);
+	double best = INFINITY, value[2] = {NAN, NAN};
+	enum status status = scan_blend(context, samples, fit);
 	if (status)
 		return error_set(error, status, "%s", status_str(status));
-	double low = middle - 1.0 / BLEND_SCAN, high = middle + 1.0 / BLEND_SCAN;
+	double low = fit->blend - 1.0 / BLEND_SCAN, high = fit->blend + 1.0 / BLEND_SCAN;
 	for (int i = 0; i < BLEND_STEPS && !status; i++) {
 		const double at[2] = {high - golden * (high - low), low + golden * (high - low)};
 		for (int side = 0; side < 2 && !status; side++) {
