@@ -48,9 +48,6 @@ enum status algorithm_find(const char *name, const struct algorithm **algorithm)
 /* Coordinates of a joint search: the shape's, then kd, then ks. */
 enum { DIMS_MAX = SPACE_DIMS + 2 * SAMPLES_CHANNELS };
 
-/* Beyond any material. Without a bound kd and ks are searched as k/(1 + k), up to this k. */
-static const double most_factor = 1e6;
-
 struct run {
 	const struct algorithm *algorithm;
 	const struct fit_options *options;
@@ -86,7 +83,8 @@ static void set_up_space(struct run *r)
 	r->dims += factors(o, o->diffuse) + factors(o, o->specular);
 	for (int d = r->space.dims; d < r->dims; d++) {
 		r->lo[d] = 0;
-		r->hi[d] = o->unbounded ? most_factor / (1 + most_factor) : 1;
+		/* Without a bound kd and ks are searched as k/(1 + k). */
+		r->hi[d] = o->unbounded ? FIT_FACTOR_MAX / (1 + FIT_FACTOR_MAX) : 1;
 	}
 }
 

@@ -32,6 +32,7 @@ MUST_CHECK enum status weight_find(const char *name, enum weight *weight);
 #define FIT_IOR_MIN 1.0001
 #define FIT_IOR_MAX 100.0
 #define FIT_K_MAX 100.0
+#define FIT_FACTOR_MAX 1e6 /* kd, ks when unbounded: far beyond any material */
 
 enum { FIT_NDFS_MAX = 16 };
 

@@ -171,7 +171,7 @@ double objective_most(const struct fit_options *options, bool specular)
 {
 	if (options->blend > 0)
 		return specular ? options->blend : 1 - options->blend;
-	return options->unbounded ? 1e6 : 1;
+	return options->unbounded ? FIT_FACTOR_MAX : 1;
 }
 
 /* The table is evaluated in float: kd/pi is one. */

@@ -468,6 +468,31 @@ static void resume_redoes_what_differs(void **state)
 	free(diary);
 }
 
+/* A cell that a model needs is missing, or holds what no model has: no number is made up for it. */
+static void rows_that_are_no_models(void **state)
+{
+	static const struct {
+		int column;
+		const char *value, *name;
+	} bad[] = {{10, "", "sigma"},    {10, "1e300", "sigma"}, {10, "1e-300", "sigma"}, {11, "", "gamma"},
+		   {11, "1.5", "gamma"}, {12, "", "ior"},        {12, "0", "ior"},        {5, "", "kd_g"},
+		   {8, "", "ks_g"},      {4, "1e300", "kd_r"}};
+
+	(void)state;
+	stdfit("a.binary --ndf std --sigma 0.2 --ior 1.5 --max-theta 20 -o whole.csv");
+	expect_code(0);
+	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+		char command[160], part[96];
+		snprintf(command, sizeof command, "awk -F, -v OFS=, 'NR == 2 { $%d = \"%s\" } 1' whole.csv >bad.csv",
+			 bad[i].column, bad[i].value);
+		shell(command);
+		stdfit("eval a.binary --from bad.csv");
+		snprintf(part, sizeof part, "'bad.csv' row 1: the row's column %s does not describe a model: '%s'",
+			 bad[i].name, bad[i].value);
+		expect_error(1, part);
+	}
+}
+
 /* A table without the latest columns gives models, but takes no rows. */
 static void older_tables(void **state)
 {
@@ -711,6 +736,7 @@ int main(void)
 		cmocka_unit_test(kill_and_resume),
 		cmocka_unit_test(resume_redoes_what_differs),
 		cmocka_unit_test(older_tables),
+		cmocka_unit_test(rows_that_are_no_models),
 		cmocka_unit_test(the_energy_is_accounted_for),
 		cmocka_unit_test(an_interrupt_keeps_what_is_done),
 		cmocka_unit_test(outputs_that_cannot_be_written),

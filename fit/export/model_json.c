@@ -45,8 +45,8 @@ static enum status read_rgb(const struct json *json, const char *name, double rg
 		return bad(name, "three numbers", error);
 	for (int c = 0; c < 3; c++) {
 		rgb[c] = number_of(&array->item[c]);
-		if (!(rgb[c] >= 0 && rgb[c] <= 1e300))
-			return bad(name, "three numbers, none negative", error);
+		if (!(rgb[c] >= 0 && rgb[c] <= FIT_FACTOR_MAX))
+			return bad(name, "three numbers from 0 to 1e6", error);
 	}
 	return STATUS_OK;
 }

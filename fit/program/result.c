@@ -298,10 +298,17 @@ static enum status bad_cell(char *const *row, enum result_column column, struct 
 			 result_columns[column].name, found);
 }
 
-static bool is_factor(char *const *row, enum result_column column)
+/* kd or ks of a channel; the other channels of a term that is there have theirs. */
+static bool is_factor(char *const *row, enum result_column column, enum result_column first)
 {
 	const double x = number_or(row, column, 0);
-	return x >= 0 && !isinf(x);
+	return x >= 0 && x <= FIT_FACTOR_MAX && !*row[column] == !*row[first];
+}
+
+/* A cell that a lobe cannot do without. */
+static bool is_missing(char *const *row, enum result_column column)
+{
+	return *row[RESULT_KS_R] && !*row[column];
 }
 
 bool result_param(const char *params, const char *name, double *value)
@@ -362,9 +369,13 @@ static enum status result_ndf(char *const *row, const struct ndf_class *class, s
 		const char *name = ndf_param_at(class, i)->name;
 		if (!strcmp(name, "sigma")) {
 			value[i] = number_or(row, RESULT_SIGMA, 1);
+			if (is_missing(row, RESULT_SIGMA) || !(value[i] >= NDF_SIGMA_MIN && value[i] <= NDF_SIGMA_MAX))
+				return STATUS_DOMAIN;
 		} else if (!strcmp(name, "gamma")) {
 			*wrong = RESULT_GAMMA;
 			value[i] = number_or(row, RESULT_GAMMA, 2.5);
+			if (is_missing(row, RESULT_GAMMA))
+				return STATUS_DOMAIN;
 		} else {
 			*wrong = RESULT_PARAMS;
 			/* Without a specular term there are none. */
@@ -375,8 +386,6 @@ static enum status result_ndf(char *const *row, const struct ndf_class *class, s
 			}
 		}
 	}
-	if (*row[RESULT_SIGMA] && !(number_or(row, RESULT_SIGMA, 1) > 0))
-		*wrong = RESULT_SIGMA;
 	if (ndf_init_params(ndf, class, value))
 		return STATUS_DOMAIN;
 	*wrong = RESULT_LAMBDA;
@@ -407,14 +416,14 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 	if (!(options->max_theta > 0 && options->max_theta <= 90))
 		return bad_cell(row, RESULT_MAX_THETA, error);
 	for (enum result_column c = 0; c < 3; c++) {
-		if (!is_factor(row, RESULT_KD_R + c))
+		if (!is_factor(row, RESULT_KD_R + c, RESULT_KD_R))
 			return bad_cell(row, RESULT_KD_R + c, error);
-		if (!is_factor(row, RESULT_KS_R + c))
+		if (!is_factor(row, RESULT_KS_R + c, RESULT_KS_R))
 			return bad_cell(row, RESULT_KS_R + c, error);
 		model->kd[c] = number_or(row, RESULT_KD_R + c, 0);
 		model->ks[c] = number_or(row, RESULT_KS_R + c, 0);
 	}
-	if (!(model->n > 0 && !isinf(model->n)))
+	if (!(model->n > 0 && !isinf(model->n)) || (options->fresnel != FRESNEL_NONE && is_missing(row, RESULT_IOR)))
 		return bad_cell(row, RESULT_IOR, error);
 	if (options->fresnel == FRESNEL_CONDUCTOR && *row[RESULT_KS_R] &&
 	    !(result_param(row[RESULT_PARAMS], "k", &model->k) && model->k >= 0))
