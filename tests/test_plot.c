@@ -132,6 +132,34 @@ static void a_perfect_fit_reads_itself(void **state)
 	}
 }
 
+/* A free form with a dip where the readings end: what it has behind that counts as it is. */
+static void a_dip_of_a_free_form_raises_no_tail(void **state)
+{
+	(void)state;
+	enum { NODES = SAMPLES_THETA_H + 1 };
+	struct cook_torrance truth = make_model("ggx", 0.3, 2, 1.5), model = truth;
+	double theta[NODES], value[NODES];
+	struct measured_ndf ndf;
+	struct pwl pwl;
+	truth.gaf = model.gaf = GAF_V_GROOVE;
+	for (int i = 0; i < NODES; i++) {
+		theta[i] = i < SAMPLES_THETA_H ? i * i / 90.0 * M_PI / 180 : M_PI / 2;
+		const bool dip = theta[i] > 1.3 && theta[i] < 1.4;
+		value[i] = ndf_D(&truth.ndf, (struct vec3){sin(theta[i]), 0, cos(theta[i])}) / (dip ? 100 : 1);
+	}
+	assert_int_equal(pwl_init(&pwl, NODES, theta, value, NULL), STATUS_OK);
+	ndf_from_pwl(&model.ndf, &pwl);
+	struct samples samples = make_table(&truth, 180, BINS_NODE, 0);
+	assert_int_equal(measured_ndf_make(&samples, &model, BINS_NODE, &ndf), STATUS_OK);
+	for (int a = 5; a < 90; a += 7) {
+		const struct vec3 w = vec3_from_spherical_deg(a, 0);
+		check_abs(pwl_G1(&ndf.pwl, w), ndf_G1(&truth.ndf, w), 0.02, "G1");
+	}
+	measured_ndf_free(&ndf);
+	samples_free(&samples);
+	pwl_free(&pwl);
+}
+
 static void no_ndf_where_there_is_none(void **state)
 {
 	(void)state;
@@ -416,6 +444,7 @@ int main(void)
 		cmocka_unit_test(a_row_of_the_map_is_what_the_model_says),
 		cmocka_unit_test(the_ndf_is_read_off_the_table),
 		cmocka_unit_test(a_perfect_fit_reads_itself),
+		cmocka_unit_test(a_dip_of_a_free_form_raises_no_tail),
 		cmocka_unit_test(no_ndf_where_there_is_none),
 		cmocka_unit_test(slices_are_the_table),
 		cmocka_unit_test(names_are_harmless_in_scripts),

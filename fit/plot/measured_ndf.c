@@ -120,7 +120,9 @@ static int make_nodes(const double D[], const struct cook_torrance *model, enum 
 	}
 	if (n == 0)
 		return 0;
-	const double fitted = fitted_D(model, known), ratio = fitted > 0 ? value[n - 1] / fitted : 0;
+	/* A free form has no law that could be scaled: its tail means as much as it says. */
+	const double fitted = fitted_D(model, known);
+	const double ratio = model->ndf.pwl ? 1 : fitted > 0 ? value[n - 1] / fitted : 0;
 	const double rest = M_PI / 2 - known;
 	for (int t = 1; t <= TAIL_NODES; t++) {
 		const double left = rest * pow(1e-6 / rest, (double)t / TAIL_NODES);

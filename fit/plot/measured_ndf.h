@@ -16,7 +16,7 @@
 struct measured_ndf {
 	double D[SAMPLES_THETA_H]; /* 1/sr; NaN where nothing was measured */
 	/* The same as a distribution, normalised, for its G1. Beyond the last theta_h with data the fit's own tail goes
-	 * on from there: masking comes from steep facets that no table shows. */
+	 * on from there (that of a free form as it is): masking comes from steep facets that no table shows. */
 	struct pwl pwl;
 	double scale; /* factor of the normalisation: 1 if ks, F and D of the fit agree with the data */
 };

@@ -250,13 +250,21 @@ static enum status write_slices(const char *directory, const struct material_dat
 	return atomic_file_commit(&file, error);
 }
 
+/* Width of a column for the legend, where it would cover the curves of the first panel. */
+static int slices_legend(const struct material_data *data)
+{
+	return data->n > 3 ? 150 : 0;
+}
+
 /* The lines of one panel stand together in the file. */
 static void put_slice_panel(FILE *file, const struct material_data *data, int s)
 {
 	const int from = 1 + s * SAMPLES_THETA_H, to = from + SAMPLES_THETA_H - 1;
 	const bool left = s % 3 == 0, bottom = s >= SLICES - 3;
 	fprintf(file, "set title \"θ_d = %g°\"\n%s\n", theta_d_deg(bins_of(data), slice_theta_d[s]),
-		s == 0 ? "set key right top" : "unset key");
+		s > 0                     ? "unset key"
+		: slices_legend(data) > 0 ? "set key at screen 0.99,0.88 right top"
+					  : "set key right top");
 	/* All panels have the same axes. */
 	fprintf(file, "set ylabel \"%s\"\nset format y \"%s\"\n", left ? "BRDF (1/sr)" : "", left ? "10^{%T}" : "");
 	fprintf(file, "set xlabel \"%s\"\nset format x \"%s\"\n", bottom ? "θ_h (degrees)" : "", bottom ? "%g" : "");
@@ -280,8 +288,13 @@ enum status plot_slices(const char *directory, const struct material_data *data,
 		status = plot_open(&file, directory, "slices.gp", error);
 	if (status)
 		return status;
-	gnuplot_begin(file.stream, "slices", 3 * PANEL_WIDTH, 40 + 2 * PANEL_HEIGHT);
-	put_grid(file.stream, SLICES, 3, "margins 0.07,0.98,0.1,0.88 spacing 0.03,0.12",
+	const int width = 3 * PANEL_WIDTH + slices_legend(data);
+	const double share = 3.0 * PANEL_WIDTH / width; /* of the panels */
+	char margins[96];
+	snprintf(margins, sizeof margins, "margins %.4g,%.4g,0.1,0.88 spacing %.4g,0.12", 0.07 * share, 0.98 * share,
+		 0.03 * share);
+	gnuplot_begin(file.stream, "slices", width, 40 + 2 * PANEL_HEIGHT);
+	put_grid(file.stream, SLICES, 3, margins,
 		 "measured and fitted at right angles to the mirror plane (φd = 90°), mean of the channels",
 		 data->name);
 	put_theta_h_axis(file.stream);
