@@ -281,6 +281,9 @@ http://?* | https://?*) ;;
 *) wrong_usage "expected an address that begins with http:// or https://, found '$address'" ;;
 esac
 directory=${1:-merl}
+case $directory in
+?*/) directory=${directory%/} ;;
+esac
 [ $# -eq 0 ] || shift
 for material; do
 	case " $materials " in

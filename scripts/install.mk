@@ -60,10 +60,12 @@ uninstall:
 		$(datadir)/bash-completion/completions/stdfit $(datadir)/zsh/site-functions/_stdfit,"$(DESTDIR)$(f)")
 	[ ! -d "$(DESTDIR)$(includedir)/stdfit" ] || rmdir --ignore-fail-on-non-empty "$(DESTDIR)$(includedir)/stdfit"
 
-# Builds and tests by itself; git's own files apart it is the whole tree.
+# Builds and tests by itself. Only what belongs to the project: measured data and tables may lie beside it.
+dist_files := .ci .clang-format .clang-tidy .cppcheck .gitignore CITATION.cff LICENSE Makefile NEWS.md README.md \
+	$(sort $(foreach f,$(folders),$(firstword $(subst /, ,$(f))))) docs scripts tests
 dist:
 	@mkdir -p $(BUILD)
 	tar -c --sort=name --owner=0 --group=0 --numeric-owner --exclude='*~' --transform='s,^,stdfit-$(VERSION)/,' \
-		$(filter-out build%,$(wildcard .c* .gitignore [A-Z]* [a-z]*)) | gzip -n >$(BUILD)/stdfit-$(VERSION).tar.gz
+		$(dist_files) | gzip -n >$(BUILD)/stdfit-$(VERSION).tar.gz
 
 .PHONY: library install uninstall dist
