@@ -404,6 +404,10 @@ static void files_are_fitted_first(void **state)
 	expect_error(1, "gnuplot is not installed");
 	expect_files("new/x_y", sources, true);
 	expect_files("new/x_y-2", sources, true);
+	/* Why one has no fit is told once. */
+	write_text("text.binary", "text\n");
+	stdfit("plot text.binary -o none " CHEAP);
+	expect_error(1, "cannot read 'text.binary'");
 }
 
 static void it_can_be_interrupted(void **state)

@@ -162,6 +162,12 @@ static void files_are_fitted_first(void **state)
 	expect_code(0);
 	expect_whole("new/index.html");
 	expect_in_page("new/index.html", "<title>stdfit: fits of a</title>", true);
+	/* Why one has no fit is told once, and in the page. */
+	write_text("text.binary", "text\n");
+	stdfit("report text.binary -o none " CHEAP);
+	expect_error(1, "cannot read 'text.binary'");
+	expect_whole("none/index.html");
+	expect_in_page("none/index.html", "failed: cannot read", true);
 }
 
 static void without_gnuplot(void **state)

@@ -13,14 +13,16 @@ struct plotting {
 	const struct options *options;
 	struct progress progress;
 	int code;
-	bool no_gnuplot; /* told already */
+	bool no_gnuplot; /* told already, */
+	bool no_data;    /* as is why there is no fit */
 };
 
 /* Tells what went wrong; once is enough for a gnuplot that is missing. */
 static void fail(struct plotting *p, enum status status, const struct error *error)
 {
 	progress_erase(&p->progress);
-	if (status != STATUS_UNSUPPORTED && status != STATUS_INTERRUPTED)
+	const bool told = status == STATUS_INTERRUPTED || (status == STATUS_NO_DATA && p->no_data);
+	if (status != STATUS_UNSUPPORTED && !told)
 		report_error("%s", error->text);
 	else if (status == STATUS_UNSUPPORTED && !p->no_gnuplot)
 		report_error("%s: data and scripts are written, no picture is drawn", error->text);
@@ -107,6 +109,7 @@ static void plot_the_fits(struct plotting *p)
 {
 	struct materials materials;
 	const int code = materials_collect(&materials, p->options);
+	p->no_data = materials.told;
 	if (materials.n && code != EXIT_INTERRUPTED)
 		plot_all(p, &materials);
 	materials_free(&materials);

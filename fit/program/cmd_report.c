@@ -165,14 +165,17 @@ static bool draw_plots(struct report *r, const struct material_data *data, struc
 }
 
 /* Draws the pictures of a material; the paths of those that are there go to picture[]. Returns whether all are. */
-static bool draw_material(struct report *r, const struct material *material, struct page_picture picture[PICTURES],
-			  char **caption, struct error *why)
+static bool draw_material(struct report *r, const struct materials *materials, size_t m,
+			  struct page_picture picture[PICTURES], char **caption, struct error *why)
 {
 	struct material_data data;
-	if (material_read(material, r->options->fit.threads, &data, why)) {
+	const enum status status = material_read(&materials->material[m], r->options->fit.threads, &data, why);
+	if (status == STATUS_NO_DATA && materials->told)
+		r->code = EXIT_FAILED;
+	else if (status)
 		tell(r, why);
+	if (status)
 		return false;
-	}
 	struct error no_spheres;
 	const bool spheres = draw_spheres(r, &data, &picture[PICTURE_SPHERES], caption, &no_spheres);
 	const bool plots = draw_plots(r, &data, picture, why);
@@ -214,7 +217,7 @@ static enum status add_material(struct report *r, const struct page *page, size_
 	};
 	struct error why;
 	char *caption = NULL;
-	const bool drawn = draw_material(r, &page->materials->material[m], picture, &caption, &why);
+	const bool drawn = draw_material(r, page->materials, m, picture, &caption, &why);
 	enum status status = STATUS_INTERRUPTED;
 	if (!*r->options->cancel)
 		status = page_material(page, m, picture, PICTURES, drawn ? NULL : why.text, error);

@@ -176,6 +176,7 @@ int materials_collect(struct materials *materials, const struct options *options
 	*materials = (struct materials){.rows = csv_table_make(result_columns, RESULT_COLUMNS)};
 	for (int i = 0; i < options->n_paths; i++)
 		table |= csv_is_name(options->path[i]);
+	materials->told = !table;
 	int code = (table ? read_rows : fit_rows)(&materials->rows, options);
 	if (sort_rows(&materials->rows) || group_rows(materials)) {
 		report_error("out of memory");

@@ -387,7 +387,9 @@ static enum status write_map_script(const char *directory, const struct material
 		return status;
 	gnuplot_begin(file.stream, "map", width, height);
 	put_grid(file.stream, data->n, columns, "",
-		 "where each fit errs, over half and difference angle (gray: nothing measured)", data->name);
+		 columns == 1 ? "where the fit errs (gray: nothing measured)"
+			      : "where each fit errs, over half and difference angle (gray: nothing measured)",
+		 data->name);
 	fprintf(file.stream,
 		"set margins 0,0,0,0\n%sset logscale cb\nset cbrange [0.03:10]\nset cblabel \"Σ|m − f| / Σm of the "
 		"row\"\n",
