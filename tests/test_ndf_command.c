@@ -448,6 +448,7 @@ static void refusals(void **state)
 		{"ndf std --sigma 0.2 --gamma 2 --theta 0:91:1", 2, "bad angles"},
 		{"ndf std --sigma 0.2 --gamma 2 --theta 0:90:1e-9", 2, "bad angles"},
 		{"ndf std --sigma 0.2 --gamma 2 --theta 1,,2", 2, "bad angles"},
+		{"ndf ggx --sigma 0.2 --theta 0:90:0.1 --phi 0:360:0.2", 2, "901 angles theta and 1801 phi: expected"},
 		{"ndf nix --sigma 0.2 --theta 1", 2, "no NDF 'nix'"},
 		{"ndf std --sigma 0.2 --theta 1", 2, "std needs gamma"},
 		{"ndf gtr --sigma 0.2,0.3 --gamma 2 --theta 1", 2, "gtr takes one sigma"},

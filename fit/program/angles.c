@@ -9,8 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ANGLES_MAX = 1000000 };
-
 /* The number before the next `between` or the end; *text then stands behind that, or is NULL at the end. */
 static bool next_number(const char **text, char between, double *x)
 {

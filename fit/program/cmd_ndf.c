@@ -97,6 +97,15 @@ static enum status add(struct csv_table *output, const struct line *line, struct
 	return csv_table_add(output, line->cell) ? error_set(error, STATUS_NO_MEMORY, "out of memory") : STATUS_OK;
 }
 
+/* All rows are in memory before the first is written. */
+static enum status check_count(const struct angles *theta, const struct angles *phi, struct error *error)
+{
+	if (theta->n * phi->n <= ANGLES_MAX)
+		return STATUS_OK;
+	return error_set(error, STATUS_DOMAIN, "%zu angles theta and %zu phi: expected at most %d rows", theta->n,
+			 phi->n, ANGLES_MAX);
+}
+
 /* Every theta with every phi. */
 static enum status tabulate(const struct options *options, const struct described *item, struct line *line,
 			    struct csv_table *output, struct error *error)
@@ -105,6 +114,8 @@ static enum status tabulate(const struct options *options, const struct describe
 	enum status status = angles_parse(options->theta, 0, 90, &theta, error);
 	if (!status)
 		status = angles_parse(options->phi ? options->phi : "0", -360, 360, &phi, error);
+	if (!status)
+		status = check_count(&theta, &phi, error);
 	for (size_t i = 0; !status && i < theta.n; i++)
 		for (size_t j = 0; !status && j < phi.n; j++) {
 			evaluate(line, &item->distribution, item->gaf,
