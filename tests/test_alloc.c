@@ -485,6 +485,12 @@ static const struct scenario scenarios[] = {
 	 .arguments = "export --threads 1 --from table.csv --row 1 --format pbrt -o new.pbrt",
 	 .output = {"new.pbrt"},
 	 .heavy = true},
+	{.name = "export of a blend",
+	 .arguments =
+		 "export --threads 1 --max-theta 5 --kd 0.3 --ks 0.9 --ndf ggx --sigma 0.3 --fresnel none --format "
+		 "mitsuba -o new.xml",
+	 .output = {"new.xml"},
+	 .heavy = true},
 	{.name = "export to merl",
 	 .arguments = "export --from table.csv --row 1 --format merl -o new.binary",
 	 .output = {"new.binary"},
