@@ -261,11 +261,38 @@ static enum status take_nested(const struct job *job, struct fit_result *r, cons
 	return status;
 }
 
+/* A search of an NDF that has been searched already: its trace goes on from there. */
+struct further {
+	const struct fit_options *options; /* whose trace it is */
+	long evaluations;
+	double seconds;
+};
+
+static void note_further(void *data, const struct fit_trace *point)
+{
+	const struct further *further = data;
+	struct fit_trace own = *point;
+
+	own.evaluations += further->evaluations;
+	own.seconds += further->seconds;
+	further->options->trace(further->options->trace_data, &own);
+}
+
+static void trace_further(struct fit_options *options, struct further *further)
+{
+	if (!options->trace)
+		return;
+	options->trace = note_further;
+	options->trace_data = further;
+}
+
 /* Goes down from the nested optima too. */
 static enum status start_from_nested(const struct job *job, const struct ndf_class *class,
 				     const struct nesting *nesting, const struct nested *nested, struct fit_result *r)
 {
 	const double begin = search_clock();
+	struct further further = {job->options, r->evaluations, r->seconds};
+	struct fit_options options = *job->options;
 	struct shape given[NESTED];
 	struct fit_result other;
 	struct found found;
@@ -280,7 +307,8 @@ static enum status start_from_nested(const struct job *job, const struct ndf_cla
 	}
 	const struct shape known = {r->model.ndf.sigma_x, r->model.ndf.gamma, r->model.n, r->model.k};
 
-	status = search_from(&job->levels, job->options, class, given, count, &known, r->error, &found);
+	trace_further(&options, &further);
+	status = search_from(&job->levels, &options, class, given, count, &known, r->error, &found);
 	if (status == STATUS_OK && found.linear.error < r->error) {
 		status = result_of(job, class, &found, &other);
 		if (status == STATUS_OK && other.error < r->error) {
@@ -322,10 +350,12 @@ static enum status fit_each_gamma(const struct job *job, const struct ndf_class 
 	struct evidence *evidence = &job->evidence[place_of(class)], best_evidence = *evidence;
 	struct fit_result one = {0};
 	struct ndf ndf;
-	long evaluations = 0, passes = 0;
-	double seconds = 0, worst = 0;
+	struct further sum = {.options = job->options};
+	long passes = 0;
+	double worst = 0;
 
 	own.options = &options;
+	trace_further(&options, &sum);
 	*r = (struct fit_result){.error = INFINITY};
 	for (options.gamma = 1.5; options.gamma <= 16 && status == STATUS_OK; options.gamma += 0.5) {
 		const struct shape shape = {.sigma = 1, .gamma = options.gamma};
@@ -333,9 +363,9 @@ static enum status fit_each_gamma(const struct job *job, const struct ndf_class 
 		if (shape_ndf(&shape, class, options.lambda, &ndf) != STATUS_OK)
 			continue;
 		status = fit_alone(&own, class, &one);
-		evaluations += one.evaluations;
+		sum.evaluations += one.evaluations;
 		passes += one.passes;
-		seconds += one.seconds;
+		sum.seconds += one.seconds;
 		if (status == STATUS_OK && one.error < r->error) {
 			*r = one;
 			best_evidence = *evidence;
@@ -345,9 +375,9 @@ static enum status fit_each_gamma(const struct job *job, const struct ndf_class 
 	*evidence = best_evidence;
 	if (worst <= (1 + FIT_UNDETERMINED) * r->error + FIT_UNDETERMINED_FLOOR)
 		r->undetermined = BOUND_GAMMA;
-	r->evaluations = evaluations;
+	r->evaluations = sum.evaluations;
 	r->passes = passes;
-	r->seconds = seconds;
+	r->seconds = sum.seconds;
 	return status;
 }
 

@@ -44,8 +44,8 @@ struct fit_trace {
 	const char *stage;           /* "scan", "thin-1" .. "thin-3" (ever larger samples of the table), "full" */
 	double sigma, gamma, ior, k; /* the shape; NaN where the model has none */
 	double error;                /* E on the stage's table: on a thinned one an estimate */
-	long evaluations;            /* shapes evaluated so far by this search */
-	double seconds;              /* since the search began */
+	long evaluations;            /* shapes evaluated so far in searching for this NDF */
+	double seconds;              /* spent on that */
 };
 
 /* struct fit_options - everything that changes a result; see fit_options_default(). NaN = free. */

@@ -381,6 +381,37 @@ static void a_trace_becomes_a_picture(void **state)
 	expect_out("2\nPNG");
 }
 
+/* A fit searches an NDF more than once: on one clock, and what thinned tables say is no news behind a full one. */
+static void searches_of_a_fit_become_one_curve(void **state)
+{
+	(void)state;
+	static const char restarts[] = "NR > 1 && $2 == ndf && ($5 < n || $6 < s) {print \"back\"}\n"
+				       "$2 == ndf && was == \"full\" && $4 ~ /thin/ {print \"again\"}\n"
+				       "{ndf = $2; was = $4; n = $5; s = $6}\n";
+	write_text("restarts.awk", restarts);
+	stdfit("fit a.binary --ndf std,ggx --ior 1.5 --max-theta 20 --trace course.csv -o course-fits.csv");
+	expect_code(0);
+	shell("awk -F, -f restarts.awk course.csv");
+	assert_string_equal(last.out, "again\n");
+	write_text("t.csv", "material,ndf,algorithm,stage,evaluations,seconds,error\n"
+			    "m,std,default,thin-1,1,0.1,0.2\nm,std,default,full,9,1,0.3\n"
+			    "m,std,default,thin-1,10,1.5,0.2\nm,std,default,full,11,2,0.31\n"
+			    "m,std,default,full,12,3,0.29\nm,ggx,default,full,1,4,0.5\n"
+			    "k,ggx,default,full,1,4,0.4\n");
+	shell("PATH=/nowhere exec \"$STDFIT\" plot t.csv -o course");
+	expect_error(1, "gnuplot is not installed");
+	char *text = slurp("course/trace.csv");
+	assert_string_equal(text, "\"m, std\",error\n0.1,0.2\n1,0.3\n3,0.29\n4,0.29\n"
+				  "\n\n\"m, ggx\",error\n4,0.5\n4,0.5\n\n\n\"k, ggx\",error\n4,0.4\n4,0.4\n");
+	free(text);
+	if (!have_gnuplot())
+		skip();
+	stdfit("plot t.csv -o course");
+	expect_code(0);
+	shell("grep -c 'm, std' course/trace.svg");
+	assert_string_equal(last.out, "2\n");
+}
+
 static void errors_are_sorted(void **state)
 {
 	(void)state;
@@ -457,6 +488,7 @@ int main(void)
 		cmocka_unit_test(no_gnuplot),
 		cmocka_unit_test(wrong_input),
 		cmocka_unit_test(a_trace_becomes_a_picture),
+		cmocka_unit_test(searches_of_a_fit_become_one_curve),
 		cmocka_unit_test(errors_are_sorted),
 		cmocka_unit_test(files_are_fitted_first),
 		cmocka_unit_test(it_can_be_interrupted),

@@ -10,7 +10,9 @@
 /* The points of one material, NDF and algorithm. */
 struct curve {
 	char *const *row; /* its first */
+	char *label;      /* what tells it from the others */
 	double last;      /* error at its end */
+	bool full;        /* which is one on the full table */
 	int colour;
 };
 
@@ -57,31 +59,22 @@ static size_t curve_of(struct curves *c, char *const *row)
 	return c->n++;
 }
 
-static enum status find_curves(struct curves *c, const struct csv_table *trace)
+static bool has_stage(char *const *row, const char *stage)
 {
-	*c = (struct curves){.trace = trace, .start = INFINITY};
-	c->curve = calloc(trace->n_rows + 1, sizeof(*c->curve));
-	c->of = calloc(trace->n_rows + 1, sizeof(*c->of));
-	if (!c->curve || !c->of)
-		return STATUS_NO_MEMORY;
-	for (size_t i = 0; i < trace->n_rows; i++) {
-		char *const *row = trace->row[i];
-		c->of[i] = trace->n_rows;
-		if (!is_point(row))
-			continue;
-		c->of[i] = curve_of(c, row);
-		c->curve[c->of[i]].last = cell_number(row, TRACE_ERROR);
-		c->start = fmin(c->start, cell_number(row, TRACE_SECONDS));
-		c->end = fmax(c->end, cell_number(row, TRACE_SECONDS));
-	}
-	c->end = c->end > c->start ? c->end : 2 * c->start;
-	return c->n ? STATUS_OK : STATUS_NO_DATA;
+	return !strcmp(row[TRACE_STAGE], stage);
 }
 
-static void curves_free(struct curves *c)
+/* Whether a further point shows something new. Once an error on the full table is known, estimates by thinned ones are
+ * none, as a further search begins with. */
+static bool is_news(const struct curve *curve, char *const *row)
 {
-	free(c->curve);
-	free(c->of);
+	return !curve->full || (has_stage(row, "full") && cell_number(row, TRACE_ERROR) < curve->last);
+}
+
+/* `bench` judges all points by the full table, and ends its curves with one of stage "end". */
+static bool is_judged(const struct csv_table *trace)
+{
+	return trace->n_rows > 0 && has_stage(trace->row[trace->n_rows - 1], "end");
 }
 
 /* What tells the curves apart; newly allocated, NULL when out of memory. */
@@ -105,15 +98,52 @@ static char *curve_label(const struct curves *c, const struct curve *curve)
 	return NULL;
 }
 
-/* One block, headed by the curve's label: what gnuplot calls an index. An end that comes early goes on flat. */
-static enum status put_curve(FILE *file, const struct curves *c, size_t n)
+static enum status find_curves(struct curves *c, const struct csv_table *trace)
 {
-	char *label = curve_label(c, &c->curve[n]), number[CSV_NUMBER_SIZE];
-	if (!label)
+	const bool judged = is_judged(trace);
+	*c = (struct curves){.trace = trace, .start = INFINITY};
+	c->curve = calloc(trace->n_rows + 1, sizeof(*c->curve));
+	c->of = calloc(trace->n_rows + 1, sizeof(*c->of));
+	if (!c->curve || !c->of)
 		return STATUS_NO_MEMORY;
-	plot_text(file, label);
+	for (size_t i = 0; i < trace->n_rows; i++) {
+		char *const *row = trace->row[i];
+		c->of[i] = trace->n_rows;
+		if (!is_point(row))
+			continue;
+		const size_t n = curve_of(c, row);
+		struct curve *curve = &c->curve[n];
+		if (!judged && !is_news(curve, row))
+			continue;
+		c->of[i] = n;
+		curve->last = cell_number(row, TRACE_ERROR);
+		curve->full = has_stage(row, "full");
+		c->start = fmin(c->start, cell_number(row, TRACE_SECONDS));
+		c->end = fmax(c->end, cell_number(row, TRACE_SECONDS));
+	}
+	c->end = c->end > c->start ? c->end : 2 * c->start;
+	for (size_t n = 0; n < c->n; n++) {
+		c->curve[n].label = curve_label(c, &c->curve[n]);
+		if (!c->curve[n].label)
+			return STATUS_NO_MEMORY;
+	}
+	return c->n ? STATUS_OK : STATUS_NO_DATA;
+}
+
+static void curves_free(struct curves *c)
+{
+	for (size_t n = 0; n < c->n; n++)
+		free(c->curve[n].label);
+	free(c->curve);
+	free(c->of);
+}
+
+/* One block, headed by the curve's label: what gnuplot calls an index. An end that comes early goes on flat. */
+static void put_curve(FILE *file, const struct curves *c, size_t n)
+{
+	char number[CSV_NUMBER_SIZE];
+	plot_text(file, c->curve[n].label);
 	fputs(",error\n", file);
-	free(label);
 	for (size_t i = 0; i < c->trace->n_rows; i++) {
 		if (c->of[i] != n)
 			continue;
@@ -124,23 +154,19 @@ static enum status put_curve(FILE *file, const struct curves *c, size_t n)
 	fputs(csv_number(number, c->end), file);
 	plot_number(file, c->curve[n].last);
 	fputc('\n', file);
-	return STATUS_OK;
 }
 
 static enum status write_curves(const char *directory, const struct curves *c, struct error *error)
 {
 	struct atomic_file file;
-	enum status status = plot_open(&file, directory, "trace.csv", error);
+	const enum status status = plot_open(&file, directory, "trace.csv", error);
 	if (status)
 		return status;
-	for (size_t n = 0; n < c->n && !status; n++) {
+	for (size_t n = 0; n < c->n; n++) {
 		fputs(n ? "\n\n" : "", file.stream);
-		status = put_curve(file.stream, c, n);
+		put_curve(file.stream, c, n);
 	}
-	if (!status)
-		return atomic_file_commit(&file, error);
-	atomic_file_abort(&file);
-	return error_set(error, status, "out of memory");
+	return atomic_file_commit(&file, error);
 }
 
 /* Where the ends lie that come near the best one, and some of the way there. */
@@ -182,13 +208,14 @@ static void put_curves(FILE *file, const struct curves *c)
 {
 	static const char *const hue[] = {"#000000", "#d55e00", "#0072b2", "#009e73", "#cc79a7",
 					  "#e69f00", "#56b4e9", "#8a5a2b", "#6a3d9a", "#808000"};
-	for (size_t n = 0; n < c->n; n++)
-		fprintf(file,
-			"%s\"trace.csv\" index %zu using 1:2 with steps lw %s dt %d lc rgb \"%s\" title "
-			"columnheader(1)",
+	for (size_t n = 0; n < c->n; n++) {
+		fprintf(file, "%s\"trace.csv\" index %zu skip 1 using 1:2 with steps lw %s dt %d lc rgb \"%s\" title ",
 			n ? ", \\\n\t" : "plot ", n, n ? "1.6" : "3",
 			strstr(c->curve[n].row[TRACE_ALGORITHM], "-joint") ? 2 : 1,
 			hue[(size_t)c->curve[n].colour % (sizeof hue / sizeof *hue)]);
+		/* No columnheader(1), which ends at a comma. */
+		gnuplot_string(file, c->curve[n].label);
+	}
 	fputc('\n', file);
 }
 
