@@ -128,6 +128,7 @@ static void a_table_becomes_a_page(void **state)
 	expect_in_page(page, "fitted by stdfit</dt><dd>" STDFIT_VERSION, true);
 	expect_in_page(page, "Pictures are missing", !image_has_png());
 	expect_in_page(page, ": spheres in the same light", image_has_png());
+	expect_in_page(page, "Spheres in the same light (studio; 1 samples a pixel)", image_has_png());
 	expect_in_page(page, "Mean CIEDE2000 and SSIM: beckmann ", image_has_png());
 }
 

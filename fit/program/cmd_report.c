@@ -87,18 +87,30 @@ static enum status begin(struct report *r, struct page *page, FILE *file, const 
 	return begun;
 }
 
-/* How far the spheres are from the measured one, in words; newly allocated, NULL when out of memory. */
-static char *spheres_caption(const struct material_data *data, const struct picture_error *difference)
+/* The light, and how many samples of it: what the spheres depend on beside the fits. */
+static void put_light(FILE *file, const struct options *options)
+{
+	const bool map = options_given(options, "environment") || !options->light;
+	fprintf(file, "%s%s%s%s", map ? options->environment : "", map && options->light ? ", " : "",
+		options->light ? "lights " : "", options->light ? options->light : "");
+	if (options->exposure != 0)
+		fprintf(file, ", exposure %g", options->exposure);
+	fprintf(file, "; %d samples a pixel", options->pixel_samples);
+}
+
+/* What the spheres show, and how far they are from the measured one, in words; newly allocated, NULL when out of
+ * memory. */
+static char *spheres_caption(const struct options *options, const struct material_data *data,
+			     const struct picture_error *difference)
 {
 	char *text = NULL;
 	size_t size;
 	FILE *file = open_memstream(&text, &size);
 	if (!file)
 		return NULL;
-	fputs("Spheres in the same light, and in false colours how far each fit's is from the measured one. Mean "
-	      "CIEDE2000 "
-	      "and SSIM:",
-	      file);
+	fputs("Spheres in the same light (", file);
+	put_light(file, options);
+	fputs("), and in false colours how far each fit's is from the measured one. Mean CIEDE2000 and SSIM:", file);
 	for (int f = 0; f < data->n; f++)
 		fprintf(file, "%s %s %.2f, %.4f", f ? ";" : "", data->fit[f].ndf, difference[f].delta_e,
 			difference[f].ssim);
@@ -122,7 +134,7 @@ static bool draw_spheres(struct report *r, const struct material_data *data, str
 	else if (path)
 		status = report_spheres(path, data, &r->environment, r->options, difference, why);
 	if (!status) {
-		*caption = spheres_caption(data, difference);
+		*caption = spheres_caption(r->options, data, difference);
 		if (!*caption)
 			status = error_set(why, STATUS_NO_MEMORY, "out of memory");
 	}
