@@ -154,7 +154,7 @@ static enum status refuse_words(const struct ndf_class *class, double sigma_x, d
 				struct error *error)
 {
 	const double sigma = sigma_x >= NDF_SIGMA_MIN && sigma_x <= NDF_SIGMA_MAX ? sigma_y : sigma_x;
-	double value[NDF_PARAMS_MAX];
+	double value[NDF_PARAMS_MAX] = {NAN, NAN, NAN};
 	for (int i = 0; ndf_param_at(class, i); i++) {
 		const char *name = ndf_param_at(class, i)->name;
 		const bool shape = !strcmp(name, "gamma") || !strcmp(name, "C");
