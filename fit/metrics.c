@@ -30,7 +30,8 @@ static inline float cube_root(float x)
 	for (int step = 0; step < 2; step++) {
 		const float cube = y.f * y.f * y.f;
 
-		y.f *= (cube + 2 * x) / (2 * cube + x);
+		/* Over 4, so that no x is too large. */
+		y.f *= (0.25F * cube + 0.5F * x) / (0.5F * cube + 0.25F * x);
 	}
 	return x > 1e-36F ? y.f : 0;
 }

@@ -355,6 +355,30 @@ static void stiff_tables(void **state)
 	}
 }
 
+/* One value next to the largest float: no metric overflows. */
+static void the_largest_value(void **state)
+{
+	const struct fit_options options = fit_options_default();
+	const struct cook_torrance model = model_of("ggx", 0.3, 2, 1.5, 0, 0);
+	struct samples samples = one_entry();
+	struct fit_metrics metrics;
+	struct error error = {""};
+	struct vec3 wi, wo;
+
+	(void)state;
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		samples.value[c][samples_at(180, 30, 20, 12)] = 3e38F;
+	halfdiff_trig_dirs(bins_trig(BINS_NODE, 30, 20, 12), &wi, &wo);
+	assert_int_equal(fit_eval(&samples, &model, &options, &metrics, &error), STATUS_OK);
+	const double share = SAMPLES_CHANNELS / (double)metrics.samples, value = wi.z * wo.z * 3e38;
+
+	check_rel(metrics.error[WEIGHT_COSINE], 1, 1e-12, "E of a black model");
+	check_rel(metrics.rms_cosine, value * sqrt(share), 1e-6, "rms_cosine");
+	check_rel(metrics.rms_cube_root, cbrt(value) * sqrt(share), 1e-6, "rms_cube_root");
+	check_rel(metrics.log_error, log(value / 1e-3) * share, 1e-6, "log_error");
+	samples_free(&samples);
+}
+
 static double faint(double value, double random)
 {
 	(void)random;
@@ -426,6 +450,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(stiff_tables),
 		cmocka_unit_test(a_rounding_of_the_data),
+		cmocka_unit_test(the_largest_value),
 		cmocka_unit_test(any_unit_of_the_data),
 		cmocka_unit_test(only_what_is_free_is_named),
 	};
