@@ -54,7 +54,7 @@ static enum status does_not_take(const char *name, struct error *error)
 /* Why a class does not take parameters, value[i] for ndf_param_at(class, i); NaN: not looked at. */
 static enum status refuse_params(const struct ndf_class *class, const double value[], struct error *error)
 {
-	for (int i = 0; ndf_param_at(class, i); i++) {
+	for (int i = 0; i < NDF_PARAMS_MAX && ndf_param_at(class, i); i++) {
 		const struct ndf_param *p = ndf_param_at(class, i);
 		if (value[i] < p->min || (value[i] == p->min && !p->min_included) || value[i] > p->max)
 			return error_set(error, STATUS_DOMAIN, "bad %s %.6g: %s takes one %s %g, up to %g", p->name,
@@ -138,7 +138,7 @@ static bool is_of_class(const char *name, const void *context)
 static enum status from_params(const struct distribution_words *words, const struct ndf_class *class, double sigma,
 			       double gamma, struct ndf *ndf, struct error *error)
 {
-	double value[NDF_PARAMS_MAX];
+	double value[NDF_PARAMS_MAX] = {NAN, NAN, NAN};
 	for (int i = 0; ndf_param_at(class, i); i++) {
 		const char *name = ndf_param_at(class, i)->name;
 		value[i] = !strcmp(name, "sigma") ? sigma : !strcmp(name, "gamma") ? gamma : NAN;
