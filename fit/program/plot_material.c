@@ -387,7 +387,7 @@ static enum status write_map_script(const char *directory, const struct material
 		return status;
 	gnuplot_begin(file.stream, "map", width, height);
 	put_grid(file.stream, data->n, columns, "",
-		 columns == 1 ? "where the fit errs (gray: nothing measured)"
+		 data->n == 1 ? "where the fit errs (gray: nothing measured)"
 			      : "where each fit errs, over half and difference angle (gray: nothing measured)",
 		 data->name);
 	fprintf(file.stream,
