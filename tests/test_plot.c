@@ -379,6 +379,12 @@ static void a_trace_becomes_a_picture(void **state)
 	assert_string_equal(last.err, "");
 	shell("grep -c crs2-joint traces/trace.svg; head -c 4 traces/trace.png | tail -c 3");
 	expect_out("2\nPNG");
+	/* A fall over many powers of ten, as of a table without noise, is shown whole. */
+	write_text("deep.csv", "material,ndf,algorithm,stage,evaluations,seconds,error\n"
+			       "m,std,default,scan,1,0.001,0.3\nm,std,default,full,2,0.01,2e-6\n");
+	shell("PATH=/nowhere exec \"$STDFIT\" plot deep.csv -o deep");
+	shell("grep -x 'set logscale xy' deep/trace.gp && grep -x 'set yrange \\[1e-06:1\\]' deep/trace.gp");
+	expect_code(0);
 }
 
 /* A fit searches an NDF more than once: on one clock, and what thinned tables say is no news behind a full one. */

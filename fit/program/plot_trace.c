@@ -169,6 +169,9 @@ static enum status write_curves(const char *directory, const struct curves *c, s
 	return atomic_file_commit(&file, error);
 }
 
+/* Below it E is that of a table without noise: a fall over so many powers of ten is shown whole. */
+#define NEXT_TO_NOTHING 1e-3
+
 /* Where the ends lie that come near the best one, and some of the way there. */
 static void put_range(FILE *file, const struct curves *c)
 {
@@ -180,8 +183,10 @@ static void put_range(FILE *file, const struct curves *c)
 		if (c->curve[n].last <= 3 * best)
 			top = fmax(top, c->curve[n].last);
 	const double span = fmax(1.6 * (top - best), 0.25 * best);
-	fprintf(file, "set logscale x\nset format x \"%%g\"\nset xrange [%.9g:%.9g]\nset yrange [%.9g:%.9g]\n",
-		c->start, c->end, best - 0.06 * span, best + span);
+	const bool whole = best < NEXT_TO_NOTHING;
+	fprintf(file, "set logscale %s\nset format %s \"%%g\"\nset xrange [%.9g:%.9g]\nset yrange [%.9g:%.9g]\n",
+		whole ? "xy" : "x", whole ? "xy" : "x", c->start, c->end,
+		whole ? fmax(0.5 * best, 1e-10) : best - 0.06 * span, whole ? 1 : best + span);
 }
 
 /* An algorithm and its joint form have one colour. */
