@@ -11,8 +11,9 @@
  *     }
  *
  * Every look leaves a cutting plane. The planes bound the minimum from below (l1_lower_bound) and fence in where it
- * lies; within the fence a Newton step on the estimated curvature is tried, else the fence's centroid, which
- * cuts its area by a constant factor: it ends for any convex function. */
+ * lies. Within the fence a Newton step is tried, on second derivatives that the table gives at first and the slopes seen
+ * correct from then on; else the fence's centroid, which cuts its area by a constant factor: it ends for any convex
+ * function. */
 #ifndef L1_H
 #define L1_H
 
@@ -28,15 +29,17 @@ struct l1_cut {
 };
 
 struct l1 {
-	double lo[2], hi[2];   /* the box */
-	double scale;          /* tolerances are relative to this, the error at kd = ks = 0 */
-	double tolerance;      /* stop when the gap is below tolerance * scale */
-	bool certify;          /* the gap is the certified one; else Newton's estimate of it */
-	double x[2], tau;      /* where to look next, and the relative width of the curvature's window */
-	double best[2], error; /* the best so far */
-	double gap;            /* estimated or certified distance of `error` from the minimum */
-	int looks;
-	bool cold, newton, snapped, done; /* done: best, error and gap are final */
+	double lo[2], hi[2];      /* the box */
+	double scale;             /* tolerances are relative to this, the error at kd = ks = 0 */
+	double tolerance;         /* stop when the gap is below tolerance * scale */
+	bool certify;             /* the gap is the certified one; else Newton's estimate of it */
+	double x[2], tau;         /* where to look next, and the relative width of the curvature's window, 0 for none */
+	double best[2], error;    /* the best so far */
+	double slope[2], h[3];    /* a subgradient there, and the second derivatives xx, xy, yy; all 0: unknown */
+	double gap;               /* estimated or certified distance of `error` from the minimum */
+	int looks, failed;        /* failed: the last looks that brought nothing better */
+	int nears;                /* looks taken near the best point, to certify it */
+	bool cold, snapped, done; /* done: best, error, h and gap are final */
 	int n_cuts;
 	struct l1_cut cut[L1_CUTS];
 	int n_corners; /* the fence: a convex polygon that holds every minimiser */
@@ -44,11 +47,12 @@ struct l1 {
 };
 
 /* l1_start - begins at `start`, moved into the box lo <= x <= hi (finite); NULL: nothing is known, and the function is the
- * one above with a, s, m >= 0 and lo = 0. */
-void l1_start(struct l1 *l1, const double lo[2], const double hi[2], const double start[2], double scale,
-	      double tolerance, bool certify);
-/* l1_update - takes the value, a subgradient and the estimated second derivatives (xx, xy, yy; all 0 when unknown)
- * at l1->x, then sets the next l1->x and l1->tau, or done. */
+ * one above with a, s, m >= 0 and lo = 0. h: the second derivatives of a problem much like this one, as its l1 had them in
+ * the end, or NULL. */
+void l1_start(struct l1 *l1, const double lo[2], const double hi[2], const double start[2], const double h[3],
+	      double scale, double tolerance, bool certify);
+/* l1_update - takes the value, a subgradient and, if l1->tau is not 0, the estimated second derivatives (xx, xy, yy; all 0
+ * when unknown) at l1->x, then sets the next l1->x and l1->tau, or done. */
 void l1_update(struct l1 *l1, double error, const double slope[2], const double curvature[3]);
 /* l1_lower_bound - the least value that a convex function with these cuts can have in the box. */
 double l1_lower_bound(const struct l1 *l1);

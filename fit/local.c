@@ -49,6 +49,7 @@ static double evaluate(unsigned dims, const double *x, double *gradient, void *d
 		l->first = error;
 	if (error < l->best.error) {
 		l->best.error = error;
+		l->best.linear = linear;
 		memcpy(l->best.x, x, dims * sizeof *x);
 	}
 	if (l->how->patient && is_done(l))
@@ -65,7 +66,7 @@ enum status local_descend(const struct space *space, struct objective *o, const 
 	struct local local = {.space = space, .objective = o, .how = how, .note = note, .user = user, .best = *place};
 	double x[SPACE_DIMS], first[SPACE_DIMS], error;
 
-	objective_forget(o);
+	objective_begin(o, &place->linear);
 	local.best.error = INFINITY;
 	memcpy(x, place->x, sizeof x);
 	nlopt_opt opt = nlopt_create(how->algorithm, dims);

@@ -26,6 +26,13 @@ void objective_forget(struct objective *o)
 	o->start.kd[0] = NAN;
 }
 
+void objective_begin(struct objective *o, const struct linear *linear)
+{
+	o->start = *linear;
+	if (linear->error == 0)
+		objective_forget(o);
+}
+
 void objective_free(struct objective *o)
 {
 	masking_free(&o->masking);
@@ -207,6 +214,9 @@ static double mean_measured(const struct objective *o, int p)
 	return (o->options->gray ? (t->sum[0] + t->sum[1] + t->sum[2]) / SAMPLES_CHANNELS : t->sum[p]) / t->sum_w;
 }
 
+/* A solve that is to be this precise is one of a small step, relative: what the last one has learnt holds for it too. */
+#define PRECISE 1e-5
+
 /* With one kd and ks for all channels there is one problem, their sum; else one a channel. */
 static void start(const struct objective *o, struct l1 problem[], int n_problems, double tolerance, bool certify)
 {
@@ -223,7 +233,7 @@ static void start(const struct objective *o, struct l1 problem[], int n_problems
 			 !cold     ? known
 			 : at_zero ? NULL
 				   : box->lo,
-			 scale, tolerance, certify);
+			 !cold && tolerance < PRECISE ? o->start.h[p] : NULL, scale, tolerance, certify);
 	}
 }
 
@@ -250,6 +260,7 @@ static void finish(const struct objective *o, const struct l1 problem[], int n_p
 	for (int p = 0; p < n_problems; p++) {
 		linear->channel[p] = problem[p].error / sum;
 		linear->error += linear->channel[p];
+		memcpy(linear->h[p], problem[p].h, sizeof linear->h[p]);
 		if (problem[p].certify)
 			linear->lower_bound += l1_lower_bound(&problem[p]) / sum;
 	}

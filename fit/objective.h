@@ -21,6 +21,7 @@ MUST_CHECK enum status shape_ndf(const struct shape *shape, const struct ndf_cla
 struct linear {
 	double kd[SAMPLES_CHANNELS], ks[SAMPLES_CHANNELS];
 	double error;                     /* E */
+	double h[SAMPLES_CHANNELS][3];    /* what the solve has learnt of the second derivatives by (kd/pi, ks) */
 	double channel[SAMPLES_CHANNELS]; /* the part of E that each has; of a gray fit the first stands for all */
 	double lower_bound;               /* no kd, ks of this shape goes below it (certified looks only; else 0) */
 };
@@ -53,8 +54,10 @@ MUST_CHECK enum status objective_init(struct objective *objective, const struct 
 				      const struct fit_options *options, const struct ndf_class *class, int threads,
 				      enum masking_density density);
 void objective_free(struct objective *objective);
-/* objective_forget - lets the next inner solve begin from nothing, not where the last one ended. */
+/* objective_forget - lets the next inner solve begin from nothing, not where the last one ended;
+ * objective_begin - or where that of a shape ended, on this table or a sample of it; error 0: from nothing. */
 void objective_forget(struct objective *objective);
+void objective_begin(struct objective *objective, const struct linear *linear);
 
 /* objective_most - the upper end of kd, or of ks: far beyond any material when unbounded. */
 double objective_most(const struct fit_options *options, bool specular);

@@ -118,8 +118,6 @@ static enum status scan(struct search *s, struct space_point *grid)
 
 #pragma omp for schedule(dynamic)
 		for (long n = 0; n < total; n += stretch) {
-			struct linear linear;
-
 			if (mine != STATUS_OK || cancelled(s))
 				continue;
 			objective_forget(&o);
@@ -127,8 +125,8 @@ static enum status scan(struct search *s, struct space_point *grid)
 				grid_place(s, i, &grid[i]);
 				const struct shape shape = space_shape(&s->space, grid[i].x);
 
-				grid[i].error = objective_eval(&o, &shape, 2e-3, false, &linear);
-				note(s, &shape, &linear);
+				grid[i].error = objective_eval(&o, &shape, 2e-3, false, &grid[i].linear);
+				note(s, &shape, &grid[i].linear);
 			}
 		}
 		if (mine == STATUS_OK) {
@@ -345,6 +343,7 @@ static enum status finish_in_turn(struct search *s, struct space_point *place, i
 	if (status != STATUS_OK)
 		return status;
 	found->shape = space_shape(&s->space, place[0].x);
+	objective_begin(&o, &place[0].linear);
 	objective_eval(&o, &found->shape, 1e-7, true, &found->linear);
 	note(s, &found->shape, &found->linear);
 	found->passes += o.passes;
@@ -517,7 +516,7 @@ enum status search_from(const struct levels *levels, const struct fit_options *o
 {
 	struct fit_options own = *options;
 	struct search s;
-	struct space_point place[SEARCH_GIVEN];
+	struct space_point place[SEARCH_GIVEN] = {{.error = 0}};
 	enum status status = STATUS_OK;
 
 	own.starts = 0;

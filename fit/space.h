@@ -35,6 +35,7 @@ struct space {
 struct space_point {
 	double x[SPACE_DIMS];
 	double error;
+	struct linear linear; /* kd and ks there; its error is 0 where they are not known */
 };
 
 /* space_init - what the options leave free for an NDF; nothing without a specular term. */

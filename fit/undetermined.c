@@ -87,11 +87,10 @@ static double error_at(struct inquiry *q, struct objective *o, const struct spac
 static void offer(struct inquiry *q, struct objective *o, const struct space *space, struct shape shape,
 		  struct space_point *start, int *n, int most)
 {
-	struct linear linear;
 	struct space_point place;
 
 	space_place(space, &shape, place.x);
-	place.error = error_at(q, o, space, place.x, 2e-3, &linear);
+	place.error = error_at(q, o, space, place.x, 2e-3, &place.linear);
 	int at = *n < most ? (*n)++ : most;
 
 	for (; at > 0 && start[at - 1].error > place.error; at--)
@@ -145,10 +144,9 @@ static enum status descend(struct inquiry *q, struct objective *o, const struct 
 			   struct space_point *place)
 {
 	struct local_how how = hows[level];
-	struct linear linear;
 
 	how.enough = best * (1 + FIT_UNDETERMINED / 2) + FIT_UNDETERMINED_FLOOR / 2;
-	place->error = error_at(q, o, space, place->x, 0.1 * how.tolerance, &linear);
+	place->error = error_at(q, o, space, place->x, 0.1 * how.tolerance, &place->linear);
 	if (space->dims == 0 || place->error <= how.enough)
 		return STATUS_OK;
 	return local_descend(space, o, &how, count, q, place, NULL);
