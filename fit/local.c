@@ -41,7 +41,7 @@ static double evaluate(unsigned dims, const double *x, double *gradient, void *d
 	(void)gradient;
 	if (cancel && atomic_load_explicit(cancel, memory_order_relaxed))
 		nlopt_force_stop(l->opt);
-	const double error = objective_eval(l->objective, &shape, 0.1 * l->how->tolerance, false, &linear);
+	const double error = objective_eval(l->objective, &shape, 0.03 * l->how->tolerance, false, &linear);
 
 	if (l->note)
 		l->note(l->user, &shape, &linear);

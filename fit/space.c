@@ -37,12 +37,14 @@ static double from_coordinate(enum coordinate c, double least_gamma, double x)
 	}
 }
 
-/* The grid of the scan. Places in gamma are those of STD, above its least gamma; other NDFs get as many between the
- * ends of theirs, up to 50. */
-static const struct axis scan_sigma = {{1e-4,   2e-4, 4e-4,   7e-4,   1e-3,  1.5e-3, 2.2e-3, 3.2e-3, 4.6e-3,
-					6.5e-3, 9e-3, 0.0125, 0.0175, 0.025, 0.035,  0.05,   0.07,   0.1,
-					0.14,   0.2,  0.28,   0.4,    0.55,  0.8,    1.2,    2,      4},
-				       27};
+/* The grid of the scan. Where the lobe is as narrow as the first bins of theta_h, 0.01 to 0.3 deg wide, the error has valleys
+ * in sigma that a coarser grid steps over. Places in gamma are those of STD, above its least gamma; other NDFs get as many
+ * between the ends of theirs, up to 50. */
+static const struct axis scan_sigma = {{1e-4,   2e-4,   4e-4,   7e-4,   1e-3,   1.2e-3, 1.5e-3, 1.8e-3, 2.2e-3,
+					2.7e-3, 3.2e-3, 3.8e-3, 4.6e-3, 5.5e-3, 6.5e-3, 7.7e-3, 9e-3,   0.0125,
+					0.0175, 0.025,  0.035,  0.05,   0.07,   0.1,    0.14,   0.2,    0.28,
+					0.4,    0.55,   0.8,    1.2,    2,      4},
+				       33};
 static const struct axis scan_gamma = {{1e-4, 1e-3, 0.005, 0.015, 0.04, 0.1, 0.25, 0.7, 2, 6.5, 48.5}, 11};
 static const struct axis scan_ior = {{1.03, 1.15, 1.35, 1.8, 3, 8, 60}, 7};
 static const struct axis scan_k = {{0, 0.5, 2, 6, 30}, 5};

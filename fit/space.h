@@ -6,7 +6,7 @@
 
 #include "objective.h"
 
-enum { SPACE_DIMS = 4, SPACE_VALUES = 32 };
+enum { SPACE_DIMS = 4, SPACE_VALUES = 34 };
 
 enum coordinate {
 	COORDINATE_SIGMA, /* ln sigma */
