@@ -16,15 +16,15 @@ static enum status refit(const struct walk *w, const struct space_point *from, d
 	static const struct local_how how = {NLOPT_LN_SBPLX, 0.02, 1e-4, 100, false, 0};
 	const struct shape near = space_shape(w->space, from->x);
 	struct space others = *w->space;
-	struct space_point place;
+	struct space_point place = *from;
 
 	space_pin(&others, w->d, value);
 	space_place(&others, &near, place.x);
 	const enum status status = local_descend(&others, w->objective, &how, w->note, w->user, &place, NULL);
 	const struct shape shape = space_shape(&others, place.x);
 
+	*to = place;
 	space_place(w->space, &shape, to->x);
-	to->error = place.error;
 	return status;
 }
 
@@ -57,11 +57,10 @@ enum status valley_follow(const struct space *space, struct objective *o, local_
 			  struct space_point *place)
 {
 	const struct shape shape = space_shape(space, place->x);
-	struct linear linear;
 	enum status status = STATUS_OK;
 
-	place->error = objective_eval(o, &shape, 1e-5, false, &linear);
-	note(user, &shape, &linear);
+	place->error = objective_eval(o, &shape, 1e-5, false, &place->linear);
+	note(user, &shape, &place->linear);
 	for (int d = 0; d < space->dims && space->dims > 1 && status == STATUS_OK; d++) {
 		const struct walk walk = {space, o, note, user, d};
 
