@@ -292,7 +292,7 @@ static enum status refine_all(struct search *s, int level, struct space_point *p
 
 /* E below which a table is all but free of noise, and above which a search of such a table is not at its end. */
 #define NOISE_FREE 0.01
-#define NEXT_TO_NOTHING 1e-5
+#define NEXT_TO_NOTHING 1e-6
 
 /* Where the search of such a table is stuck on the floor of a valley, leads it on: on the smallest sample, then on the
  * full table. */
