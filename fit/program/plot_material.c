@@ -47,7 +47,7 @@ static void put_theta_h_axis(FILE *file)
 
 static void put_grid(FILE *file, int n, int columns, const char *margins, const char *what, const char *material)
 {
-	char title[TEXT_QUOTE_SIZE + 64], shown[TEXT_QUOTE_SIZE];
+	char title[TEXT_QUOTE_SIZE + 128], shown[TEXT_QUOTE_SIZE];
 	text_quote(material, shown, sizeof shown);
 	snprintf(title, sizeof title, "%s: %s", shown, what);
 	fprintf(file, "set multiplot layout %d,%d %s title ", (n + columns - 1) / columns, columns, margins);
