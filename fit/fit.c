@@ -373,7 +373,7 @@ static enum status fit_each_gamma(const struct job *job, const struct ndf_class 
 		worst = fmax(worst, one.error);
 	}
 	*evidence = best_evidence;
-	if (worst <= (1 + FIT_UNDETERMINED) * r->error + FIT_UNDETERMINED_FLOOR)
+	if (worst <= undetermined_limit(r->error))
 		r->undetermined = BOUND_GAMMA;
 	r->evaluations = sum.evaluations;
 	r->passes = passes;
@@ -493,7 +493,7 @@ static unsigned gamma_settled(const struct job *job, const struct ndf_class *cla
 			      const struct fit_result *r)
 {
 	const struct nesting *nesting = nesting_of(job, class);
-	const double limit = (1 + FIT_UNDETERMINED) * r->error + FIT_UNDETERMINED_FLOOR;
+	const double limit = undetermined_limit(r->error);
 
 	for (int n = 0; nesting && n < NESTED; n++)
 		if (!isnan(nesting->gamma[n]) && nested->result[n].error > limit)

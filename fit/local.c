@@ -6,6 +6,9 @@
 /* Looks that a patient search waits for something better, and those of its first model, taken twice. */
 #define PATIENCE(dims) (2 * (dims) + 2)
 #define FIRST_LOOKS(dims) (4 * (dims) + 2)
+/* Share of a search's tolerance to which kd and ks are solved for: what they miss is noise to the search, which then ends
+ * further off. */
+#define INNER 0.03
 
 struct local {
 	const struct space *space;
@@ -41,7 +44,7 @@ static double evaluate(unsigned dims, const double *x, double *gradient, void *d
 	(void)gradient;
 	if (cancel && atomic_load_explicit(cancel, memory_order_relaxed))
 		nlopt_force_stop(l->opt);
-	const double error = objective_eval(l->objective, &shape, 0.03 * l->how->tolerance, false, &linear);
+	const double error = objective_eval(l->objective, &shape, INNER * l->how->tolerance, false, &linear);
 
 	if (l->note)
 		l->note(l->user, &shape, &linear);

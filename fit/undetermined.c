@@ -37,6 +37,11 @@ static double limit_of(int level, double best)
 	return best * (1 + slack[level].relative) + slack[level].absolute;
 }
 
+double undetermined_limit(double error)
+{
+	return limit_of(SEARCH_LEVELS - 1, error);
+}
+
 /* How each level is searched; the coarsest one decides most. */
 static const struct local_how hows[SEARCH_LEVELS - 1] = {{NLOPT_LN_SBPLX, 0.7, 1e-3, 100, false, 0},
 							 {NLOPT_LN_SBPLX, 0.3, 1e-4, 40, false, 0},

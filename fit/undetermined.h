@@ -10,6 +10,10 @@
 
 #include "search.h"
 
+/* undetermined_limit - what E may be, the other parameters refitted, for a parameter to count as undetermined: of a fit
+ * that ended at `error`, see FIT_UNDETERMINED. */
+double undetermined_limit(double error);
+
 /* undetermined_find - the free parameters, as bits of enum fit_bound, that are undetermined at the optimum *best, whose E
  * on the full table is `error`. Counts the shapes that it evaluates in *evaluations.
  * Given:  *evidence of the search_run() of this NDF under these options; determined: parameters known not to be
