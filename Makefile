@@ -23,13 +23,13 @@ warnings := -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-pr
 fpflags := -fno-math-errno -fno-trapping-math -ffp-contract=off
 # One set of objects for the program and the shared library.
 picflags := -fPIC -fno-semantic-interposition
-ALL_CFLAGS = -std=c11 -D_GNU_SOURCE $(warnings) $(OPT) -fopenmp $(fpflags) $(picflags) $(addprefix -I,$(folders)) \
+ALL_CFLAGS = -std=c11 -D_GNU_SOURCE $(warnings) $(OPT) -fopenmp $(fpflags) $(picflags) -I. \
 	$(pkg_cflags) -DSTDFIT_VERSION='"$(VERSION)"' $(CFLAGS_$(basename $(@F))) $(CFLAGS)
 LIBS = $(pkg_libs) -lm
 
 # Each uses only those before it.
-folders := src data_readers fit fit/export fit/plot fit/render fit/program
-lib_sources := $(filter-out fit/program/main.c,$(foreach folder,$(folders),$(wildcard $(folder)/*.c)))
+folders := src data_readers $(addprefix fit/,error search results export render cli sources plot page commands)
+lib_sources := $(filter-out fit/commands/main.c,$(foreach folder,$(folders),$(wildcard $(folder)/*.c)))
 lib_objects := $(lib_sources:%.c=$(BUILD)/%.o)
 
 # The kernel's loops want vectors; on x86-64 it is compiled a second time for AVX2 and chosen at run time
@@ -49,7 +49,7 @@ ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
 AVX2 ?= yes
 endif
 ifeq ($(AVX2),yes)
-lib_objects += $(BUILD)/fit/kernel_avx2.o
+lib_objects += $(BUILD)/fit/error/kernel_avx2.o
 CFLAGS_kernel_pick := -DKERNEL_HAVE_AVX2
 endif
 test_sources := $(wildcard tests/test_*.c)
@@ -60,7 +60,7 @@ manuals := $(BUILD)/stdfit.1 $(BUILD)/completions/stdfit.bash $(BUILD)/completio
 
 all: $(BUILD)/stdfit $(manuals)
 
-$(BUILD)/stdfit: $(BUILD)/fit/program/main.o $(lib_objects)
+$(BUILD)/stdfit: $(BUILD)/fit/commands/main.o $(lib_objects)
 	$(call quiet,LD)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS)
 
 $(BUILD)/stdfit.1: print := --man
@@ -74,7 +74,7 @@ $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
 	$(call quiet,CC)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 
-$(BUILD)/fit/kernel_avx2.o: fit/kernel.c Makefile
+$(BUILD)/fit/error/kernel_avx2.o: fit/error/kernel.c Makefile
 	@mkdir -p $(@D)
 	$(call quiet,CC)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 
@@ -177,4 +177,4 @@ include scripts/install.mk
 
 .PHONY: all setup check run-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo clean
 
--include $(lib_objects:.o=.d) $(BUILD)/fit/program/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))
+-include $(lib_objects:.o=.d) $(BUILD)/fit/commands/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))

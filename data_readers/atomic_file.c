@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "atomic_file.h"
-#include "text_quote.h"
+#include "data_readers/atomic_file.h"
+#include "data_readers/text_quote.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>

@@ -3,7 +3,7 @@
 #ifndef ATOMIC_FILE_H
 #define ATOMIC_FILE_H
 
-#include "status.h"
+#include "src/status.h"
 #include <stdio.h>
 
 /* struct atomic_file - an output under way. The caller writes to `stream` and may leave checking for errors to the

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "merl.h"
-#include "atomic_file.h"
-#include "regular_file.h"
-#include "text_quote.h"
+#include "data_readers/merl.h"
+#include "data_readers/atomic_file.h"
+#include "data_readers/regular_file.h"
+#include "data_readers/text_quote.h"
 #include <endian.h>
 #include <errno.h>
 #include <float.h>

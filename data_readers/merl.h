@@ -8,7 +8,7 @@
 #ifndef MERL_H
 #define MERL_H
 
-#include "samples.h"
+#include "data_readers/samples.h"
 
 /* merl_read - reads `path` into a new table with up to `threads` threads (less than 1 counts as 1), which change no
  * result. An entry with a negative or non-finite value in any channel is masked in all three and counted once, as

@@ -3,7 +3,7 @@
 #ifndef REGULAR_FILE_H
 #define REGULAR_FILE_H
 
-#include "status.h"
+#include "src/status.h"
 #include <stddef.h>
 #include <sys/stat.h>
 

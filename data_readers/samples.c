@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "samples.h"
-#include "names.h"
+#include "data_readers/samples.h"
+#include "src/names.h"
 #include <stdlib.h>
 #include <sys/mman.h>
 

@@ -3,8 +3,8 @@
 #ifndef SAMPLES_H
 #define SAMPLES_H
 
-#include "halfdiff.h"
-#include "status.h"
+#include "src/halfdiff.h"
+#include "src/status.h"
 #include <stddef.h>
 #include <stdint.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "text_file.h"
+#include "data_readers/text_file.h"
 
 #include <errno.h>
 #include <fcntl.h>

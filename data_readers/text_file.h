@@ -3,7 +3,7 @@
 #ifndef TEXT_FILE_H
 #define TEXT_FILE_H
 
-#include "status.h"
+#include "src/status.h"
 #include <stddef.h>
 
 /* text_file_read - the text of a file of at most `most` bytes, newly allocated, terminated, into *text, and its length into

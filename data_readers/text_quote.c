@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "text_quote.h"
+#include "data_readers/text_quote.h"
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>

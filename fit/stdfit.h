@@ -11,24 +11,24 @@ extern "C" {
 #endif
 
 /* src: mathematics */
-#include "cook_torrance.h"
-#include "ellipsoid.h"
-#include "energy.h"
-#include "fresnel.h"
-#include "halfdiff.h"
-#include "lambda_form.h"
-#include "ndf.h"
-#include "ndf_slopes.h"
-#include "pwl.h"
-#include "smith.h"
-#include "status.h"
-#include "vec3.h"
-#include "vndf.h"
+#include "src/cook_torrance.h"
+#include "src/ellipsoid.h"
+#include "src/energy.h"
+#include "src/fresnel.h"
+#include "src/halfdiff.h"
+#include "src/lambda_form.h"
+#include "src/ndf.h"
+#include "src/ndf_slopes.h"
+#include "src/pwl.h"
+#include "src/smith.h"
+#include "src/status.h"
+#include "src/vec3.h"
+#include "src/vndf.h"
 /* data_readers: measured data */
-#include "merl.h"
-#include "samples.h"
+#include "data_readers/merl.h"
+#include "data_readers/samples.h"
 /* fit */
-#include "fit.h"
+#include "fit/search/fit.h"
 
 #ifdef __cplusplus
 }

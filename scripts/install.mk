@@ -9,12 +9,11 @@ NM ?= nm
 OBJCOPY ?= objcopy
 export NM
 
-library_folders := src data_readers fit
+library_folders := src data_readers fit/error fit/search
 library_objects := $(filter $(foreach f,$(library_folders),$(patsubst %.c,$(BUILD)/%.o,$(wildcard $(f)/*.c))) \
 	%/kernel_avx2.o,$(lib_objects))
 # What fit/stdfit.h includes is public; what that declares is exported, and nothing else.
-public_headers := fit/stdfit.h $(foreach h,$(shell sed -n 's/^\#include "\(.*\)"/\1/p' fit/stdfit.h), \
-	$(wildcard $(addsuffix /$(h),$(library_folders))))
+public_headers := fit/stdfit.h $(shell sed -n 's/^\#include "\(.*\)"/\1/p' fit/stdfit.h)
 shared := libstdfit.so.$(VERSION)
 soname := libstdfit.so.$(firstword $(subst ., ,$(VERSION)))
 
@@ -46,7 +45,8 @@ install: all library
 	ln -sf $(shared) "$(DESTDIR)$(libdir)/$(soname)"
 	ln -sf $(shared) "$(DESTDIR)$(libdir)/libstdfit.so"
 	$(call put,644,$(BUILD)/libstdfit.a,$(libdir))
-	$(call put,644,$(public_headers),$(includedir)/stdfit)
+	for h in $(public_headers); do sed 's,^#include ".*/,#include ",' $$h >$(BUILD)/$${h##*/} && \
+		$(call put,644,$(BUILD)/$${h##*/},$(includedir)/stdfit) && rm $(BUILD)/$${h##*/} || exit 1; done
 	sed 's,@PREFIX@,$(PREFIX),; s,@LIBDIR@,$(libdir),; s,@INCLUDEDIR@,$(includedir),; s,@VERSION@,$(VERSION),; s,@REQUIRES@,$(PKGS),' \
 		scripts/stdfit.pc.in >$(BUILD)/stdfit.pc
 	$(call put,644,$(BUILD)/stdfit.pc,$(libdir)/pkgconfig)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cook_torrance.h"
+#include "src/cook_torrance.h"
 
 double cook_torrance_lobe(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo)
 {

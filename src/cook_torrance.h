@@ -8,9 +8,9 @@
 #ifndef COOK_TORRANCE_H
 #define COOK_TORRANCE_H
 
-#include "fresnel.h"
-#include "ndf.h"
-#include "smith.h"
+#include "src/fresnel.h"
+#include "src/ndf.h"
+#include "src/smith.h"
 
 struct cook_torrance {
 	struct ndf ndf;

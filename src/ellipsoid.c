@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "ellipsoid.h"
-#include "mat3.h"
+#include "src/ellipsoid.h"
+#include "src/mat3.h"
 #include <stdbool.h>
 
 /* Below this, with rows of length 1, the determinant is rounding. */

@@ -7,8 +7,8 @@
 #ifndef ELLIPSOID_H
 #define ELLIPSOID_H
 
-#include "status.h"
-#include "vec3.h"
+#include "src/status.h"
+#include "src/vec3.h"
 
 /* Roughness alpha of ellipsoid_init_angles(). */
 #define ELLIPSOID_ALPHA_MIN 1e-50

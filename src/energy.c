@@ -2,9 +2,9 @@
 /* The integral runs over the half vector h, at the slope tan(theta_h) = exp(v) and the azimuth phi from the plane of
  * incidence: d wo = 4 (wi.h) dh, and D, the only sharp factor, depends on v alone, with about the same width for all
  * sigma. wo lies above the horizon where sin_i sin(2 theta_h) cos(phi) + cos_i cos(2 theta_h) > 0. */
-#include "energy.h"
-#include "quadrature.h"
-#include "smith_table.h"
+#include "src/energy.h"
+#include "src/quadrature.h"
+#include "src/smith_table.h"
 
 /* exp(v) down to exp(-18) of the median slope: 1e-15 of the normals lie below. */
 #define V_BELOW 18.0

@@ -7,7 +7,7 @@
 #ifndef ENERGY_H
 #define ENERGY_H
 
-#include "cook_torrance.h"
+#include "src/cook_torrance.h"
 
 /* energy_lobe - directional albedo of the microfacet lobe for ks = 1; of FRESNEL_NONE, the furnace balance.
  * Given:   an isotropic model, pl included; cos_i in [0, 1]: at 0 the limit at grazing incidence

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "fresnel.h"
-#include "names.h"
+#include "src/fresnel.h"
+#include "src/names.h"
 #include <complex.h>
 #include <math.h>
 

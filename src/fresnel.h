@@ -5,7 +5,7 @@
 #ifndef FRESNEL_H
 #define FRESNEL_H
 
-#include "status.h"
+#include "src/status.h"
 
 enum fresnel {
 	FRESNEL_DIELECTRIC, /* exact, real index n */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "halfdiff.h"
+#include "src/halfdiff.h"
 
 void halfdiff_trig_dirs(struct halfdiff_trig a, struct vec3 *wi, struct vec3 *wo)
 {

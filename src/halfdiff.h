@@ -3,7 +3,7 @@
 #ifndef HALFDIFF_H
 #define HALFDIFF_H
 
-#include "vec3.h"
+#include "src/vec3.h"
 
 struct halfdiff {
 	double theta_h, theta_d, phi_d; /* radians; phi_h = 0: isotropic materials */

@@ -9,7 +9,7 @@
 #ifndef LAMBDA_FORM_H
 #define LAMBDA_FORM_H
 
-#include "status.h"
+#include "src/status.h"
 #include <stdbool.h>
 
 enum lambda_form {

@@ -3,7 +3,7 @@
 #ifndef MAT3_H
 #define MAT3_H
 
-#include "vec3.h"
+#include "src/vec3.h"
 
 static inline struct vec3 vec3_cross(struct vec3 a, struct vec3 b)
 {

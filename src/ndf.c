@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "ndf.h"
-#include "ndf_class.h"
-#include "pwl.h"
-#include "student_t.h"
+#include "src/ndf.h"
+#include "src/ndf_class.h"
+#include "src/pwl.h"
+#include "src/student_t.h"
 #include <string.h>
 
 static const struct ndf_class *const classes[] = {

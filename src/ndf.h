@@ -25,9 +25,9 @@
 #ifndef NDF_H
 #define NDF_H
 
-#include "lambda_form.h"
-#include "status.h"
-#include "vec3.h"
+#include "src/lambda_form.h"
+#include "src/status.h"
+#include "src/vec3.h"
 #include <stdbool.h>
 
 struct pwl;

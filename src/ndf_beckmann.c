@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Beckmann: Gaussian slopes of standard deviation sigma/sqrt(2). D -> 0 at the horizon. */
-#include "ndf_class.h"
-#include "ndf_formulas.h"
+#include "src/ndf_class.h"
+#include "src/ndf_formulas.h"
 
 const struct ndf_class ndf_class_beckmann = {
 	.name = "beckmann",

@@ -4,7 +4,7 @@
 #ifndef NDF_CLASS_H
 #define NDF_CLASS_H
 
-#include "ndf.h"
+#include "src/ndf.h"
 
 struct ndf_class {
 	const char *name;

@@ -11,7 +11,7 @@
 #ifndef NDF_FORMULAS_H
 #define NDF_FORMULAS_H
 
-#include "ndf.h"
+#include "src/ndf.h"
 
 /* An unevaluated sum, |lo| <= ulp(hi)/2. */
 struct dd {

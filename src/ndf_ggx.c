@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* GGX (Trowbridge-Reitz): slopes with Student-t marginals of 2 degrees of freedom. At the horizon D tends to
  * 1/(pi sigma_x sigma_y ((m.x/sigma_x)^2 + (m.y/sigma_y)^2)^2), sigma^2/pi when isotropic. */
-#include "ndf_class.h"
-#include "ndf_formulas.h"
+#include "src/ndf_class.h"
+#include "src/ndf_formulas.h"
 
 const struct ndf_class ndf_class_ggx = {
 	.name = "ggx",

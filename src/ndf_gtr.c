@@ -5,8 +5,8 @@
  * Divided by the smaller of its two ends the bracket becomes v >= 1, with v - 1 = (S - 1) x, where S = max(sigma^2,
  * sigma^-2), and x = sin^2 for sigma <= 1, cos^2 above. As x is uniform in the measure cos dm = pi dx, everything
  * follows from v^-gamma on [1, S]. */
-#include "ndf_class.h"
-#include "smith_quadrature.h"
+#include "src/ndf_class.h"
+#include "src/smith_quadrature.h"
 
 /* (exp(x) - 1)/x, 1 at 0 */
 static double expm1_ratio(double x)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Hyper-Cauchy: Student-t slopes with f = 1 (B = 1/sigma^2). GGX at gamma = 2; as gamma grows the surface gets
  * smoother, without ever becoming Beckmann's [STD supplement, eq. 8]. */
-#include "ndf_class.h"
-#include "student_t.h"
+#include "src/ndf_class.h"
+#include "src/student_t.h"
 
 static bool hyper_cauchy_prepare(struct ndf *ndf)
 {

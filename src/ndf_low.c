@@ -3,8 +3,8 @@
  * with. A follows from the normalisation. Isotropic. Small C: a long tail; large C at constant B C: Gaussian.
  *
  * With v = 1 - cos, in [0, 1]: D cos dm = 2 pi A (1 - v) (1 + B v)^-C dv. */
-#include "ndf_class.h"
-#include "smith_quadrature.h"
+#include "src/ndf_class.h"
+#include "src/smith_quadrature.h"
 
 /* Below this B max(1, C) the closed form of the share loses digits, and a Gauss rule has them all. */
 #define GAUSS_BELOW 1.0

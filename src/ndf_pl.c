@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The piecewise-linear NDF (pwl.h) as one of the distributions. It has no parameters to search: it is made of a table
  * of node values by ndf_from_pwl(). */
-#include "ndf_class.h"
-#include "pwl.h"
+#include "src/ndf_class.h"
+#include "src/pwl.h"
 
 static double pl_D(const struct ndf *ndf, struct vec3 m)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "ndf_slopes.h"
-#include "ndf_class.h"
+#include "src/ndf_slopes.h"
+#include "src/ndf_class.h"
 
 double ndf_P22(const struct ndf *ndf, double p, double q)
 {

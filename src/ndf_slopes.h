@@ -4,7 +4,7 @@
 #ifndef NDF_SLOPES_H
 #define NDF_SLOPES_H
 
-#include "ndf.h"
+#include "src/ndf.h"
 
 /* ndf_P22 - density of the slopes (p, q), D cos^4 of their normal; relative error as ndf_D(). */
 double ndf_P22(const struct ndf *ndf, double p, double q);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Student-t distribution of slopes (STD): GGX at gamma = 2, Beckmann at gamma = infinity, longer tails below 2.
  * At the horizon D -> 0 for gamma > 2, stays finite at 2 and grows without bound as cos^(2 gamma - 4) for gamma < 2. */
-#include "ndf_class.h"
-#include "student_t.h"
+#include "src/ndf_class.h"
+#include "src/student_t.h"
 
 static bool std_prepare(struct ndf *ndf)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* t-family: Student-t slopes with f = 1/(gamma - x) (B = f/sigma^2) [STD supplement, section 1.1]. At x = 2, the
  * default, the variance of the slopes is sigma^2/2 for every gamma (eq. 9); x = 1 is std. */
-#include "ndf_class.h"
-#include "student_t.h"
+#include "src/ndf_class.h"
+#include "src/student_t.h"
 
 /* Closer to x, 1 + q/(gamma-x) could overflow within the domain of sigma. */
 #define GAMMA_ABOVE_X 1e-6

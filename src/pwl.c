@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pwl.h"
+#include "src/pwl.h"
 #include <stdlib.h>
 
 /* Gauss-Legendre abscissae and weights, the positive half. */

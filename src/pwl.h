@@ -9,7 +9,7 @@
 #ifndef PWL_H
 #define PWL_H
 
-#include "ndf.h"
+#include "src/ndf.h"
 
 enum { PWL_NODES_MAX = 1 << 20 };
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "sampling.h"
-#include "names.h"
+#include "src/sampling.h"
+#include "src/names.h"
 
 static const char *const sampling_names[SAMPLING_COUNT] = {"visible", "ndf"};
 

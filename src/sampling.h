@@ -3,7 +3,7 @@
 #ifndef SAMPLING_H
 #define SAMPLING_H
 
-#include "status.h"
+#include "src/status.h"
 
 enum sampling {
 	SAMPLING_VISIBLE, /* those seen from a direction, vndf.h */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "smith.h"
-#include "names.h"
+#include "src/smith.h"
+#include "src/names.h"
 
 static const char *const names[GAF_COUNT] = {"uncorrelated", "correlated", "v-groove"};
 

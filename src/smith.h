@@ -3,7 +3,7 @@
 #ifndef SMITH_H
 #define SMITH_H
 
-#include "ndf.h"
+#include "src/ndf.h"
 
 enum gaf {
 	GAF_UNCORRELATED, /* 1 / ((1 + Lambda(wi)) (1 + Lambda(wo))) */

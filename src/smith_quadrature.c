@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "smith_quadrature.h"
+#include "src/smith_quadrature.h"
 
 /* At cot beyond this no facet is turned away; below the other end Lambda is proportional to 1/mu to all digits. */
 #define MU_NORMAL 1e100

@@ -9,7 +9,7 @@
 #ifndef SMITH_QUADRATURE_H
 #define SMITH_QUADRATURE_H
 
-#include "ndf.h"
+#include "src/ndf.h"
 
 /* smith_quadrature_lambda - Lambda(w) of ndf, through ndf_D(), ndf->log_width, ndf->far and ndf->gamma.
  * Given:   w a unit vector, w.z > 0. D isotropic, finite at the horizon, and analytic in t = tan(theta) except where t

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "smith_table.h"
+#include "src/smith_table.h"
 
 enum { LAST = SMITH_TABLE_OCTAVES * SMITH_TABLE_PER_OCTAVE };
 

@@ -4,7 +4,7 @@
 #ifndef SMITH_TABLE_H
 #define SMITH_TABLE_H
 
-#include "ndf.h"
+#include "src/ndf.h"
 
 enum { SMITH_TABLE_OCTAVES = 64, SMITH_TABLE_PER_OCTAVE = 16 };
 

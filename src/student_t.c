@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "student_t.h"
-#include "ndf_formulas.h"
+#include "src/student_t.h"
+#include "src/ndf_formulas.h"
 #include <stddef.h>
 
 /* From here on STD is Beckmann: D differs from it by a factor 1 + q^2/(2 gamma), less than 3e-17 even at 1e-304. */

@@ -9,7 +9,7 @@
 #ifndef STUDENT_T_H
 #define STUDENT_T_H
 
-#include "ndf.h"
+#include "src/ndf.h"
 
 /* student_t_K - Gamma(gamma-1/2) / (sqrt(pi) Gamma(gamma-1)), relative error 1e-15; 1/sqrt(pi) times the root of
  * gamma - 1 for large gamma, INFINITY for INFINITY. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "vec3.h"
+#include "src/vec3.h"
 
 /* Sine and cosine of deg, |deg| finite, in the precision of long double. Reduced to 0..45 degrees before pi comes in:
  * the reduction is exact, and near 90 degrees the cosine keeps its digits. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "vndf.h"
-#include "ndf_class.h"
-#include "ndf_formulas.h"
-#include "vndf_student.h"
+#include "src/vndf.h"
+#include "src/ndf_class.h"
+#include "src/ndf_formulas.h"
+#include "src/vndf_student.h"
 #include <gsl/gsl_cdf.h>
 #include <stddef.h>
 

@@ -15,8 +15,8 @@
 #ifndef VNDF_H
 #define VNDF_H
 
-#include "ndf.h"
-#include "smith.h"
+#include "src/ndf.h"
+#include "src/smith.h"
 
 /* vndf_supports - whether vndf_sample() can sample this distribution: all above; gtr and low it cannot. */
 bool vndf_supports(const struct ndf *ndf);

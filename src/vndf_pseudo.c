@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "vndf.h"
+#include "src/vndf.h"
 #include <stddef.h>
 
 double vndf_weight(const struct ndf *ndf, enum gaf gaf, struct vec3 wi, struct vec3 m, double pdf)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "vndf_student.h"
+#include "src/vndf_student.h"
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdbool.h>

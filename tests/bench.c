@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* bench - how near the error kernel comes to the memory it reads, and what a fit costs.
  * usage: bench [OUT.csv]. Everything is measured side by side in one run; medians, and ratios of medians. */
-#include "fit.h"
+#include "fit/error/objective.h"
+#include "fit/search/fit.h"
+#include "fit/search/search.h"
 #include "make_table.h"
-#include "objective.h"
-#include "search.h"
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -4,7 +4,7 @@
 #ifndef EXTREMES_H
 #define EXTREMES_H
 
-#include "ndf.h"
+#include "src/ndf.h"
 #include <stdlib.h>
 
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* figures - the data of the STD paper's Figs 3, 4, 5, 9 and 10, as CSV, and what they come to beside what it says.
  * usage: figures DIRECTORY. Isotropic throughout; gamma = inf stands for Beckmann. scripts/figures.sh draws them. */
-#include "atomic_file.h"
-#include "energy.h"
+#include "data_readers/atomic_file.h"
+#include "fit/search/search.h"
 #include "make_table.h"
-#include "ndf_slopes.h"
-#include "search.h"
-#include "vndf.h"
+#include "src/energy.h"
+#include "src/ndf_slopes.h"
+#include "src/vndf.h"
 
 enum { DIRECTIONS = 4096, REPEATS = 7 };
 

@@ -5,7 +5,7 @@
 #ifndef FUZZ_H
 #define FUZZ_H
 
-#include "text_quote.h"
+#include "data_readers/text_quote.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The bytes are arguments, each ended by a zero byte, as in /proc/self/cmdline; the first may name the command. */
+#include "fit/cli/options.h"
 #include "fuzz.h"
-#include "options.h"
 
 enum { ARGUMENTS_MAX = 64 };
 

@@ -3,8 +3,8 @@
  * its header, and it is zero behind that, but for records of 11 bytes each, which put a number (8) at an index (3). Its
  * size is the one that the header asks for, the same and a byte, the same without the last byte, or 1 TB. The file is
  * kept in memory, and zeroed again by overwriting the records: each of many runs costs no more than reading it. */
+#include "data_readers/merl.h"
 #include "fuzz.h"
-#include "merl.h"
 
 #include <float.h>
 #include <math.h>

@@ -3,12 +3,12 @@
  * as by compare; merged; or resumed. Below 128, the rest of the bytes are the file. From 128 on they are lines that each
  * change a cell of a sound row: the first byte is the column, what follows is the new content; an empty line begins the
  * next row. */
-#include "commands.h"
+#include "fit/cli/report.h"
+#include "fit/commands/commands.h"
+#include "fit/results/result.h"
+#include "fit/results/store.h"
 #include "fuzz.h"
 #include "json_check.h"
-#include "report.h"
-#include "result.h"
-#include "store.h"
 
 #include <sys/stat.h>
 #include <unistd.h>

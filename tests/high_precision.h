@@ -4,7 +4,7 @@
 #ifndef HIGH_PRECISION_H
 #define HIGH_PRECISION_H
 
-#include "vec3.h"
+#include "src/vec3.h"
 #include <float.h>
 #include <stdbool.h>
 

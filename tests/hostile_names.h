@@ -3,8 +3,8 @@
 #ifndef HOSTILE_NAMES_H
 #define HOSTILE_NAMES_H
 
+#include "data_readers/text_quote.h"
 #include "run_program.h"
-#include "text_quote.h"
 
 /* What markup, gnuplot or a shell would take for its own. */
 #define HOSTILE_NAMES                                                                                                  \

@@ -3,7 +3,7 @@
 #ifndef JSON_CHECK_H
 #define JSON_CHECK_H
 
-#include "text_quote.h"
+#include "data_readers/text_quote.h"
 #include <ctype.h>
 #include <stdbool.h>
 #include <string.h>

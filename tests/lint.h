@@ -3,7 +3,7 @@
 #ifndef LINT_H
 #define LINT_H
 
-#include "status.h"
+#include "src/status.h"
 
 /* error_set() returns the status that it is given. */
 #define error_set(error, status, ...) ((void)error_set(error, status, __VA_ARGS__), (status))

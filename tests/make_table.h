@@ -3,8 +3,8 @@
 #ifndef MAKE_TABLE_H
 #define MAKE_TABLE_H
 
-#include "cook_torrance.h"
-#include "samples.h"
+#include "data_readers/samples.h"
+#include "src/cook_torrance.h"
 #include <stdlib.h>
 
 static inline double random_unit(unsigned *seed)

@@ -4,7 +4,7 @@
 #define RUN_FIT_H
 
 #include "check.h"
-#include "fit.h"
+#include "fit/search/fit.h"
 
 /* The default options, for one NDF, on two threads. */
 static inline struct fit_options options_for(const char *ndf)

@@ -5,8 +5,8 @@
 #define RUN_PROGRAM_H
 
 #include "check.h"
-#include "image.h"
-#include "result.h"
+#include "fit/render/image.h"
+#include "fit/results/result.h"
 
 #include <errno.h>
 #include <sys/wait.h>

@@ -3,16 +3,16 @@
  * infinities, values out of bounds, breaks of monotony, floating-point exceptions. `make stability` runs it.
  *     stability FILE.csv      writes one row per quantity and distribution, prints the summary; exit 1 where something
  *                             is not as the headers say */
-#include "cook_torrance.h"
-#include "ellipsoid.h"
-#include "energy.h"
 #include "extremes.h"
+#include "fit/error/kernel.h"
+#include "fit/error/objective.h"
 #include "high_precision.h"
-#include "kernel.h"
-#include "ndf_slopes.h"
-#include "objective.h"
-#include "pwl.h"
-#include "vndf.h"
+#include "src/cook_torrance.h"
+#include "src/ellipsoid.h"
+#include "src/energy.h"
+#include "src/ndf_slopes.h"
+#include "src/pwl.h"
+#include "src/vndf.h"
 #include <fenv.h>
 #include <signal.h>
 #include <stdarg.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The searches beside the default one: each ends with the best it saw, traces its way there, and stops when told to. */
-#include "algorithms.h"
 #include "check.h"
+#include "fit/results/trace.h"
+#include "fit/search/algorithms.h"
 #include "make_table.h"
-#include "trace.h"
 
 #include <unistd.h>
 

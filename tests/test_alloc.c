@@ -17,10 +17,10 @@
 #define OWN_ALLOCATOR 1
 #endif
 
-#include "commands.h"
-#include "image.h"
+#include "data_readers/merl.h"
+#include "fit/commands/commands.h"
+#include "fit/render/image.h"
 #include "json_check.h"
-#include "merl.h"
 #include "run_program.h"
 
 #include <dlfcn.h>
@@ -34,7 +34,7 @@
 /* The program's own main(), which is not in what tests are linked with. */
 int stdfit_main(int argc, char **argv);
 #define main stdfit_main
-#include "main.c"
+#include "fit/commands/main.c"
 #undef main
 
 /* --- the allocator ----------------------------------------------------------------------------------------------- */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program: bench, --trace, --algorithm. Runs $STDFIT or build/stdfit. */
 #include "check.h"
-#include "result.h"
-#include "trace.h"
+#include "fit/results/result.h"
+#include "fit/results/trace.h"
 
 #include <sys/wait.h>
 #include <unistd.h>

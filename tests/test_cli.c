@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program itself: exit codes, both streams, bad input, batches, kill and resume. Runs $STDFIT or build/stdfit. */
-#include "energy.h"
 #include "run_program.h"
+#include "src/energy.h"
 
 #include <fcntl.h>
 #include <signal.h>

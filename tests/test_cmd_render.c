@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit render, and the pictures of compare: what comes out, what is refused, Ctrl-C. */
-#include "image.h"
+#include "fit/render/image.h"
 #include "run_program.h"
 
 #include <signal.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* sRGB, CIELAB, CIEDE2000, SSIM and the false colours, against published values and by their properties. */
 #include "chi_square.h"
-#include "colour.h"
-#include "ssim.h"
+#include "fit/render/colour.h"
+#include "fit/render/ssim.h"
 
 static void srgb_is_the_standards(void **state)
 {

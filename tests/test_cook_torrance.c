@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
-#include "cook_torrance.h"
-#include "halfdiff.h"
+#include "src/cook_torrance.h"
+#include "src/halfdiff.h"
 
 static struct cook_torrance model_make(const char *name, double sigma, double gamma)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CSV: numbers that read back exactly, quotes, and files that are not as they should be. */
 #include "check.h"
-#include "csv.h"
+#include "fit/results/csv.h"
 
 #include <float.h>
 #include <unistd.h>

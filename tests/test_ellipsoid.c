@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
 #include "chi_square.h"
-#include "ellipsoid.h"
-#include "ndf.h"
+#include "src/ellipsoid.h"
+#include "src/ndf.h"
 #include <gsl/gsl_integration.h>
 
 #define DEG (M_PI / 180.0)

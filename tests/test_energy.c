@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
 #include "chi_square.h"
-#include "energy.h"
+#include "src/energy.h"
 #include <gsl/gsl_integration.h>
 
 static struct cook_torrance mirror(const char *name, double sigma, double gamma, enum gaf gaf)

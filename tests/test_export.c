@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit export, read back: MERL and JSON to the bit, Mitsuba, pbrt and glTF by what their numbers mean; stand-ins and
  * the errors they tell; refusals. The GLSL has a test of its own. Runs $STDFIT or build/stdfit. */
-#include "json.h"
+#include "data_readers/merl.h"
+#include "fit/error/model_table.h"
+#include "fit/error/table.h"
+#include "fit/export/json.h"
+#include "fit/export/model_json.h"
 #include "make_table.h"
-#include "merl.h"
-#include "model_json.h"
-#include "model_table.h"
 #include "run_program.h"
-#include "table.h"
 #include "xml.h"
 
 #define LOBE "--kd 0.31,0.12,0.047 --ks 0.42,0.53,0.6"

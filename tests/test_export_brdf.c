@@ -2,10 +2,10 @@
 /* The GLSL of BRDF Explorer files, run: the same values as cook_torrance_f() for every NDF, G, F and form of Lambda, in
  * double and in float arithmetic; and glslangValidator takes it, where that is installed. */
 #include "check.h"
-#include "export.h"
+#include "fit/export/export.h"
 #include "glsl.h"
 #include "make_table.h"
-#include "pwl.h"
+#include "src/pwl.h"
 
 #include <unistd.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whole fits of tables in memory: the parameters come back, richer models never lose, threads change nothing. */
 #include "check.h"
-#include "fit.h"
+#include "fit/search/fit.h"
 #include "make_table.h"
 #include "run_fit.h"
 #include <omp.h>

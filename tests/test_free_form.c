@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The piecewise-linear NDF fitted to a table: a floor for the parametric ones. */
 #include "check.h"
-#include "fit.h"
-#include "free_form.h"
+#include "fit/search/fit.h"
+#include "fit/search/free_form.h"
 #include "make_table.h"
 #include "run_fit.h"
 

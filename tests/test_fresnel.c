@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
-#include "fresnel.h"
+#include "src/fresnel.h"
 
 static void golden_dielectric(void **state)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
-#include "halfdiff.h"
+#include "src/halfdiff.h"
 
 static struct vec3 turned_about_z(struct vec3 v, double angle)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Names that nobody expects in pictures, pages, scripts and the formats of other programs. */
+#include "fit/render/image.h"
 #include "hostile_names.h"
-#include "image.h"
 #include "json_check.h"
 #include "xml.h"
 

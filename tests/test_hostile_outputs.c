@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Places that cannot take what is written: a full disk, closed streams, directories that are none or closed, inputs. Each
  * file is whole, as it was, or not there, and one line says why. */
-#include "image.h"
+#include "fit/render/image.h"
 #include "run_program.h"
 
 #include <sched.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* PFM, Radiance and PNG files: there and back, known bytes, and files that are none. */
 #include "check.h"
-#include "colour.h"
-#include "image.h"
+#include "fit/render/colour.h"
+#include "fit/render/image.h"
 #include <sys/stat.h>
 #include <unistd.h>
 

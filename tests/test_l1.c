@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The two-variable L1 solver against the exact minimum, found by trying every vertex. */
 #include "check.h"
-#include "l1.h"
+#include "fit/error/l1.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -262,8 +262,10 @@ static void finds_what_is_next_to_nothing_beside_the_box(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(reaches_the_exact_minimum), cmocka_unit_test(neighbours_teach),
-		cmocka_unit_test(stays_in_the_box),          cmocka_unit_test(one_variable_is_a_weighted_median),
+		cmocka_unit_test(reaches_the_exact_minimum),
+		cmocka_unit_test(neighbours_teach),
+		cmocka_unit_test(stays_in_the_box),
+		cmocka_unit_test(one_variable_is_a_weighted_median),
 		cmocka_unit_test(all_zero_data_end_at_zero),
 		cmocka_unit_test(finds_what_is_next_to_nothing_beside_the_box),
 	};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
-#include "lambda_form.h"
-#include "ndf.h"
+#include "src/lambda_form.h"
+#include "src/ndf.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_sf_gamma.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The manual page and the completions: all commands and options, in a form that man, bash and zsh take. */
-#include "option_value.h"
+#include "fit/cli/option_value.h"
 #include "run_program.h"
 
 static bool installed(const char *tool)

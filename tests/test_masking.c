@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tabulated G1 against the exact one, over the domain of the fit. */
 #include "check.h"
-#include "masking.h"
+#include "fit/error/masking.h"
 
 static const double sigmas[] = {1e-4, 3.7e-3, 0.05, 0.31, 1.3, 4};
 static const double gammas[] = {1.5001, 1.513, 1.7, 2, 2.6, 7.3, 55, 1000, INFINITY};

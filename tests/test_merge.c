@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shares of a batch, and their tables joined: the result is what one run writes, or one line says why there is none. */
-#include "files.h"
+#include "fit/cli/files.h"
 #include "run_program.h"
 
 /* A fit that takes a moment: few free parameters, few entries. */

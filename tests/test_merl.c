@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The MERL reader and writer, the table they fill, and output that is there whole or not at all. */
-#include "atomic_file.h"
 #include "check.h"
-#include "merl.h"
-#include "text_quote.h"
+#include "data_readers/atomic_file.h"
+#include "data_readers/merl.h"
+#include "data_readers/text_quote.h"
 #include <dirent.h>
 #include <endian.h>
 #include <errno.h>

@@ -2,9 +2,9 @@
 /* Where models come from: a row gives back the very model that was fitted, pl's table included; parameters are taken
  * as they are; what cannot be had is told in one line. */
 #include "check.h"
+#include "data_readers/merl.h"
+#include "fit/sources/model_source.h"
 #include "make_table.h"
-#include "merl.h"
-#include "model_source.h"
 
 #include <stdio.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
-#include "ndf.h"
+#include "src/ndf.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
 

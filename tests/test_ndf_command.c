@@ -2,12 +2,12 @@
 /* stdfit ndf and stdfit sample, through their CSV: golden rows from standard input, the numbers of the library to the
  * bit, samples against their density and their weights against the albedo. Runs $STDFIT or build/stdfit. */
 #include "chi_square.h"
-#include "energy.h"
-#include "json.h"
-#include "ndf_slopes.h"
-#include "pwl.h"
+#include "fit/export/json.h"
 #include "run_program.h"
-#include "vndf.h"
+#include "src/energy.h"
+#include "src/ndf_slopes.h"
+#include "src/pwl.h"
+#include "src/vndf.h"
 
 enum { IN_NAME, IN_D, IN_P22, IN_P2, IN_LAMBDA, IN_G1, IN_PDF, IN_VISIBLE, IN_WEIGHT, IN_THETA, IN_COLUMNS };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
 #include "chi_square.h"
-#include "ndf.h"
+#include "src/ndf.h"
 #include <gsl/gsl_integration.h>
 
 static void golden_std(void **state)

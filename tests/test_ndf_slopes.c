@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
-#include "ndf_slopes.h"
+#include "src/ndf_slopes.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The error kernel and the metrics against sums of the scalar reference over every entry. */
 #include "check.h"
+#include "fit/error/metrics.h"
+#include "fit/error/objective.h"
 #include "make_table.h"
-#include "metrics.h"
-#include "objective.h"
 
 static struct fit_options options_with(enum gaf gaf, enum weight weight, enum bins bins, double max_theta)
 {

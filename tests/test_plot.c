@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Plots: the numbers behind them, and `stdfit plot`. Runs $STDFIT or build/stdfit. */
-#include "error_map.h"
-#include "gnuplot.h"
+#include "fit/plot/error_map.h"
+#include "fit/plot/gnuplot.h"
+#include "fit/plot/measured_ndf.h"
+#include "fit/plot/slice.h"
 #include "make_table.h"
-#include "measured_ndf.h"
 #include "run_program.h"
-#include "slice.h"
 
 #include <signal.h>
 

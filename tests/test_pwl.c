@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
 #include "chi_square.h"
-#include "pwl.h"
+#include "src/pwl.h"
 #include <gsl/gsl_integration.h>
 
 #define DEG (M_PI / 180.0)

@@ -2,9 +2,9 @@
 /* Spheres: environments and their sampling, surfaces and theirs, white furnaces, estimators against each other, the
  * same model from its formula and from its table, errors of pictures. */
 #include "chi_square.h"
-#include "energy.h"
+#include "fit/render/pictures.h"
 #include "make_table.h"
-#include "pictures.h"
+#include "src/energy.h"
 
 /* A map with this radiance everywhere. */
 static struct environment constant_light(double radiance)

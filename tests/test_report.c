@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `stdfit report`: text and files inside a page, the page as text, and in a browser where one is installed. Runs $STDFIT
  * or build/stdfit. */
-#include "html.h"
-#include "image.h"
+#include "fit/page/html.h"
+#include "fit/render/image.h"
 #include "run_program.h"
 
 /* A fit that takes a moment. */

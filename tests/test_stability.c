@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The extremes of every function, condensed from `make stability`, and what once went wrong there. */
 #include "check.h"
-#include "cook_torrance.h"
-#include "ellipsoid.h"
 #include "extremes.h"
+#include "fit/error/objective.h"
 #include "make_table.h"
-#include "ndf_slopes.h"
-#include "objective.h"
-#include "pwl.h"
-#include "vndf.h"
+#include "src/cook_torrance.h"
+#include "src/ellipsoid.h"
+#include "src/ndf_slopes.h"
+#include "src/pwl.h"
+#include "src/vndf.h"
 #include <fenv.h>
 #include <float.h>
 

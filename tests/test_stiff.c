@@ -3,7 +3,7 @@
  * it cannot know. Every twelfth phi_d stands for all of them. Some cases are left out unless the environment has
  * STDFIT_STABILITY=1: then random starts must find nothing better, either, and it takes minutes. */
 #include "check.h"
-#include "fit.h"
+#include "fit/search/fit.h"
 #include "make_table.h"
 #include "run_fit.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
 #include "chi_square.h"
-#include "vndf.h"
-#include "vndf_student.h"
+#include "src/vndf.h"
+#include "src/vndf_student.h"
 #include <gsl/gsl_integration.h>
 
 static struct ndf ndf_make(const char *name, double sigma_x, double sigma_y, double gamma)

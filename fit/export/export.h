@@ -6,7 +6,7 @@
 #ifndef EXPORT_H
 #define EXPORT_H
 
-#include "fit.h"
+#include "fit/search/fit.h"
 #include <stdio.h>
 
 enum export_format {

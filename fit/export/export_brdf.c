@@ -2,10 +2,10 @@
 /* BRDF Explorer: GLSL of the whole model. GLSL has 32-bit floats and neither the Gamma function nor erf; so Gamma ratios
  * and normalisations are constants, and each formula is the one of src/ that loses the fewest digits, with as many terms
  * as a float can tell. Lambda without a closed form is a table (lambda_table.h). */
-#include "csv_number.h"
-#include "export_format.h"
-#include "lambda_table.h"
-#include "pwl.h"
+#include "fit/export/export_format.h"
+#include "fit/export/lambda_table.h"
+#include "fit/results/csv_number.h"
+#include "src/pwl.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -393,7 +393,9 @@ static void write_header(const struct export *export, FILE *file, const struct l
 	lines(&(struct glsl){.file = file}, "analytic\n");
 	export_comment(export, file, "# ", "");
 	if (table->n)
-		fprintf(file, "# Smith's Lambda is interpolated in a table of %d values; between them the error of G1 is at most %.1e\n",
+		fprintf(file,
+			"# Smith's Lambda is interpolated in a table of %d values; between them the error of G1 is at "
+			"most %.1e\n",
 			table->n, table->G1_error);
 	fprintf(file, "\n::begin parameters\nbool diffuse 1\nbool specular 1\n::end parameters\n\n::begin shader\n\n");
 	fprintf(file, "const float MF_PI = 3.1415926535897932385;\n");

@@ -3,7 +3,7 @@
 #ifndef EXPORT_FORMAT_H
 #define EXPORT_FORMAT_H
 
-#include "export.h"
+#include "fit/export/export.h"
 
 /* struct export_target - what a format supplies. */
 struct export_target {

@@ -4,11 +4,11 @@
  *     F_c = s (F0_c + (1 - F0_c) (1 - cos_d)^5),  F0_c = min(1, ((n-1)/(n+1))^2 specularColor_c),
  * D of GGX with sigma = roughness^2, G height-correlated: so every export is approximate, and its error is measured with
  * that formula. s = max ks, specularColor = ks/s. */
-#include "csv_number.h"
-#include "entries.h"
-#include "export_format.h"
-#include "stand_in.h"
-#include "table.h"
+#include "fit/error/entries.h"
+#include "fit/error/table.h"
+#include "fit/export/export_format.h"
+#include "fit/export/stand_in.h"
+#include "fit/results/csv_number.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "csv_number.h"
-#include "export_format.h"
-#include "model_json.h"
-#include "text_quote.h"
+#include "data_readers/text_quote.h"
+#include "fit/export/export_format.h"
+#include "fit/export/model_json.h"
+#include "fit/results/csv_number.h"
 
 #include <string.h>
 

@@ -4,9 +4,9 @@
  *     kd = (1 - w) reflectance,  ks = w specular_reflectance,  w = max ks / (max kd + max ks)
  * says every model with max kd + max ks <= 1. A conductor with k = 0 is the exact dielectric reflectance; without eta and
  * k it is a mirror, F = 1. */
-#include "csv_number.h"
-#include "export_format.h"
-#include "stand_in.h"
+#include "fit/export/export_format.h"
+#include "fit/export/stand_in.h"
+#include "fit/results/csv_number.h"
 
 static const struct target target = {
 	.name = "Mitsuba 3",

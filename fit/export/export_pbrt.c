@@ -3,9 +3,9 @@
  * expectation,
  *     kd = (1 - w) reflectance,  ks = w.
  * The conductor is F D G / (4 cos_i cos_o) of GGX with the height-correlated G; its eta and k are spectra, here flat. */
-#include "csv_number.h"
-#include "export_format.h"
-#include "stand_in.h"
+#include "fit/export/export_format.h"
+#include "fit/export/stand_in.h"
+#include "fit/results/csv_number.h"
 
 static const struct target target = {
 	.name = "pbrt-v4",

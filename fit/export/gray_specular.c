@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gray_specular.h"
-#include "entries.h"
-#include "table.h"
+#include "fit/export/gray_specular.h"
+#include "fit/error/entries.h"
+#include "fit/error/table.h"
 
 #include <stdlib.h>
 

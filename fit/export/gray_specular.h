@@ -4,7 +4,7 @@
 #ifndef GRAY_SPECULAR_H
 #define GRAY_SPECULAR_H
 
-#include "fit.h"
+#include "fit/search/fit.h"
 
 /* gray_specular - sets each ks to their mean, and each kd to what minimises E under the options' weight, bins and
  * max_theta: the weighted median of pi (m - ks lobe), within [0, 1 - ks]. STATUS_NO_MEMORY leaves *model as it was. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "lambda_table.h"
+#include "fit/export/lambda_table.h"
 #include <stdlib.h>
 
 enum { FIRST_DENSITY = 8, LAST_DENSITY = 32 };

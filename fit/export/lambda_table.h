@@ -8,7 +8,7 @@
 #ifndef LAMBDA_TABLE_H
 #define LAMBDA_TABLE_H
 
-#include "ndf.h"
+#include "src/ndf.h"
 
 struct lambda_table {
 	double log2_first; /* log2 mu of node 0 */

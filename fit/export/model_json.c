@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "model_json.h"
-#include "json.h"
-#include "text_quote.h"
+#include "fit/export/model_json.h"
+#include "data_readers/text_quote.h"
+#include "fit/export/json.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -16,8 +16,8 @@
 #ifndef MODEL_JSON_H
 #define MODEL_JSON_H
 
-#include "export.h"
-#include "pwl.h"
+#include "fit/export/export.h"
+#include "src/pwl.h"
 
 /* struct model_json - a model that was read; what it owns is freed by model_json_free(). */
 struct model_json {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "stand_in.h"
-#include "export_format.h"
-#include "gray_specular.h"
-#include "model_table.h"
-#include "text_quote.h"
+#include "fit/export/stand_in.h"
+#include "data_readers/text_quote.h"
+#include "fit/error/model_table.h"
+#include "fit/export/export_format.h"
+#include "fit/export/gray_specular.h"
 
 #include <stdarg.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef STAND_IN_H
 #define STAND_IN_H
 
-#include "export.h"
+#include "fit/export/export.h"
 
 /* struct target - what a renderer's own microfacet lobe can be. All have GGX. */
 struct target {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "error_map.h"
+#include "fit/plot/error_map.h"
 #include <math.h>
 
 enum status error_map_make(const struct samples *samples, const struct cook_torrance *model,

@@ -3,8 +3,8 @@
 #ifndef ERROR_MAP_H
 #define ERROR_MAP_H
 
-#include "fit.h"
-#include "metrics.h"
+#include "fit/error/metrics.h"
+#include "fit/search/fit.h"
 
 /* error_map_make - the sums of E row by row, under the options' weight, bins, max_theta and the model's own G.
  * Returns: row[theta_d index + 90 theta_h index], see metrics.h

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "measured_ndf.h"
-#include "entries.h"
-#include "masking.h"
-#include "weighted_median.h"
+#include "fit/plot/measured_ndf.h"
+#include "fit/error/entries.h"
+#include "fit/error/masking.h"
+#include "fit/error/weighted_median.h"
 #include <math.h>
 #include <stdlib.h>
 

@@ -9,9 +9,9 @@
 #ifndef MEASURED_NDF_H
 #define MEASURED_NDF_H
 
-#include "cook_torrance.h"
-#include "pwl.h"
-#include "samples.h"
+#include "data_readers/samples.h"
+#include "src/cook_torrance.h"
+#include "src/pwl.h"
 
 struct measured_ndf {
 	double D[SAMPLES_THETA_H]; /* 1/sr; NaN where nothing was measured */

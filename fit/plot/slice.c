@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "slice.h"
+#include "fit/plot/slice.h"
 
 enum { MIDDLE = 90 }; /* index of phi_d, in the 360 table too */
 

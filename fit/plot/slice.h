@@ -4,8 +4,8 @@
 #ifndef SLICE_H
 #define SLICE_H
 
-#include "cook_torrance.h"
-#include "samples.h"
+#include "data_readers/samples.h"
+#include "src/cook_torrance.h"
 
 /* slice_measured - entry (i, j) at phi_d = 90 (90.5 at centres) degrees into m[3], 1/sr; NaN where masked. */
 void slice_measured(const struct samples *samples, int i, int j, double m[SAMPLES_CHANNELS]);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "environment.h"
-#include "colour.h"
+#include "fit/render/environment.h"
+#include "fit/render/colour.h"
 #include <math.h>
 #include <stdlib.h>
 

@@ -6,8 +6,8 @@
 #ifndef ENVIRONMENT_H
 #define ENVIRONMENT_H
 
-#include "image.h"
-#include "vec3.h"
+#include "fit/render/image.h"
+#include "src/vec3.h"
 
 enum { ENVIRONMENT_LIGHTS_MAX = 16 };
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The built-in environments, drawn into maps. */
-#include "environment.h"
-#include "mat3.h"
-#include "names.h"
+#include "fit/render/environment.h"
+#include "src/mat3.h"
+#include "src/names.h"
 #include <math.h>
 
 enum { MAP_HEIGHT = 256 }; /* texels of 0.7 degrees: a mirror sphere of 256 pixels shows hardly finer ones */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "font.h"
+#include "fit/render/font.h"
 #include <string.h>
 
 enum { DOTS = 5, FIRST = ' ', LAST = '~' };

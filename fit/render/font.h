@@ -3,7 +3,7 @@
 #ifndef FONT_H
 #define FONT_H
 
-#include "image.h"
+#include "fit/render/image.h"
 
 enum { FONT_ADVANCE = 6, FONT_HEIGHT = 9 }; /* dots from one character to the next; dots of a line */
 

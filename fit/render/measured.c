@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "measured.h"
+#include "fit/render/measured.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef MEASURED_H
 #define MEASURED_H
 
-#include "samples.h"
+#include "data_readers/samples.h"
 
 /* struct measured - a copy of a table without gaps. */
 struct measured {

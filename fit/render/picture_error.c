@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "picture_error.h"
-#include "colour.h"
-#include "ssim.h"
+#include "fit/render/picture_error.h"
+#include "fit/render/colour.h"
+#include "fit/render/ssim.h"
 #include <math.h>
 #include <stdlib.h>
 

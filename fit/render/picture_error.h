@@ -3,7 +3,7 @@
 #ifndef PICTURE_ERROR_H
 #define PICTURE_ERROR_H
 
-#include "sphere.h"
+#include "fit/render/sphere.h"
 
 /* struct picture_error - over the pixels that show nothing but the sphere. */
 struct picture_error {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "pictures.h"
+#include "fit/render/pictures.h"
 #include <stdlib.h>
 
 static enum status render(const struct cook_torrance *model, const struct measured *measured, enum sampling sampling,

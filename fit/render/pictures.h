@@ -3,7 +3,7 @@
 #ifndef PICTURES_H
 #define PICTURES_H
 
-#include "picture_error.h"
+#include "fit/render/picture_error.h"
 
 /* struct pictures_model - a model of the material and how good it is said to be; NaN: nobody has said. */
 struct pictures_model {

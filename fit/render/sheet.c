@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "sheet.h"
-#include "colour.h"
-#include "font.h"
+#include "fit/render/sheet.h"
+#include "fit/render/colour.h"
+#include "fit/render/font.h"
 #include <math.h>
 #include <stdio.h>
 

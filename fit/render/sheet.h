@@ -3,7 +3,7 @@
 #ifndef SHEET_H
 #define SHEET_H
 
-#include "picture_error.h"
+#include "fit/render/picture_error.h"
 
 struct sheet {
 	struct image image; /* linear; owned */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "sphere.h"
+#include "fit/render/sphere.h"
 #include <gsl/gsl_qrng.h>
 #include <math.h>
 #include <stdlib.h>

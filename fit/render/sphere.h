@@ -3,8 +3,8 @@
 #ifndef SPHERE_H
 #define SPHERE_H
 
-#include "environment.h"
-#include "surface.h"
+#include "fit/render/environment.h"
+#include "fit/render/surface.h"
 #include <stdatomic.h>
 #include <stdint.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "surface.h"
-#include "vndf.h"
+#include "fit/render/surface.h"
+#include "src/vndf.h"
 #include <math.h>
 
 static double mean_of(const double rgb[3])

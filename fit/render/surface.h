@@ -3,10 +3,10 @@
 #ifndef SURFACE_H
 #define SURFACE_H
 
-#include "cook_torrance.h"
-#include "masking.h"
-#include "measured.h"
-#include "sampling.h"
+#include "fit/error/masking.h"
+#include "fit/render/measured.h"
+#include "src/cook_torrance.h"
+#include "src/sampling.h"
 
 struct surface {
 	const struct cook_torrance *model; /* borrowed; directions are sampled by its lobe */

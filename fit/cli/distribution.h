@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* distribution - an NDF as it is described by words: of a command line, or of a row of a table. */
+#ifndef DISTRIBUTION_H
+#define DISTRIBUTION_H
+
+#include "src/ellipsoid.h"
+#include "src/pwl.h"
+#include "src/sampling.h"
+#include "src/smith.h"
+
+/* struct distribution_words - the description; empty or NULL: not given. All borrowed. */
+struct distribution_words {
+	const char *name;            /* of ndf.h, or "ellipsoid" */
+	const char *sigma, *sigma_y; /* roughness; sigma_y: along y, if another */
+	const char *gamma;
+	const char *
+		params; /* name=value;... for what sigma and gamma do not say: x of t-family; B and C of low, in place of
+			     * sigma and gamma; D0 to D90 of pl at the nodes of MERL's theta_h (`bins` node) and at the horizon;
+			     * alpha_x, alpha_y and theta_x, theta_y, theta_z (degrees, 0 if not given) of the ellipsoid */
+	const char *lambda; /* form of Lambda */
+};
+
+/* struct distribution - one of either kind; freed by distribution_free(). */
+struct distribution {
+	const char *name;
+	bool is_ellipsoid;
+	struct ndf ndf;
+	struct pwl *pwl; /* the table of ndf, if that is pl */
+	struct ellipsoid ellipsoid;
+};
+
+/* distribution_make - the NDF that the words describe. STATUS_DOMAIN, with what was expected, when they describe none;
+ * STATUS_NO_MEMORY. */
+MUST_CHECK enum status distribution_make(const struct distribution_words *words, struct distribution *distribution,
+					 struct error *error);
+void distribution_free(struct distribution *distribution);
+
+/* As the functions of ndf.h, ndf_slopes.h and vndf.h, and what ellipsoid.h has of them. NaN where there is none: P2 of
+ * pl, and of the ellipsoid, whose Lambda is that of its Smith masking, G1 not bounded. */
+double distribution_D(const struct distribution *distribution, struct vec3 m);
+double distribution_P22(const struct distribution *distribution, double p, double q);
+double distribution_P2(const struct distribution *distribution, double phi, double q);
+double distribution_lambda(const struct distribution *distribution, struct vec3 w);
+double distribution_G1(const struct distribution *distribution, struct vec3 w);
+double distribution_visible_pdf(const struct distribution *distribution, struct vec3 wi, struct vec3 m);
+/* distribution_weight - vndf_weight(); of the ellipsoid with G1(wi) G1(wo), whatever gaf. */
+double distribution_weight(const struct distribution *distribution, enum gaf gaf, struct vec3 wi, struct vec3 m,
+			   double pdf);
+
+bool distribution_samples(const struct distribution *distribution, enum sampling sampling);
+struct vec3 distribution_sample(const struct distribution *distribution, enum sampling sampling, struct vec3 wi,
+				double u1, double u2);
+/* distribution_pdf - the density of distribution_sample(), 1/sr. */
+double distribution_pdf(const struct distribution *distribution, enum sampling sampling, struct vec3 wi, struct vec3 m);
+
+#endif

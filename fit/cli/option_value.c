@@ -1,0 +1,529 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/cli/option_value.h"
+#include "data_readers/text_quote.h"
+#include "fit/results/csv.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FIT (1u << COMMAND_FIT)
+#define COMPARE (1u << COMMAND_COMPARE)
+#define MERGE (1u << COMMAND_MERGE)
+#define BENCH (1u << COMMAND_BENCH)
+#define EVAL (1u << COMMAND_EVAL)
+#define INFO (1u << COMMAND_INFO)
+#define SYNTH (1u << COMMAND_SYNTH)
+#define EXPORT (1u << COMMAND_EXPORT)
+#define NDF (1u << COMMAND_NDF)
+#define SAMPLE (1u << COMMAND_SAMPLE)
+#define PLOT (1u << COMMAND_PLOT)
+#define RENDER (1u << COMMAND_RENDER)
+#define REPORT (1u << COMMAND_REPORT)
+#define DRAWS (PLOT | REPORT)
+#define FITS (FIT | COMPARE | DRAWS)
+#define SEARCHES (FITS | BENCH)
+#define TABLES (FIT | COMPARE | BENCH)
+#define MODEL (EVAL | SYNTH)
+#define SOURCES (EXPORT | RENDER) /* a fit, a row or given parameters: model_source.h */
+#define AT(member) offsetof(struct options, member)
+
+const struct option_spec option_specs[] = {
+	{"output", 'o', KIND_TEXT, FIT, NOT_RECORDED, "FILE",
+	 "write the table there; an older FILE becomes FILE~, with --resume only if it has rows to redo", AT(output), 0,
+	 0},
+	{"output", 'o', KIND_TEXT, COMPARE | MERGE, NOT_RECORDED, "FILE",
+	 "write the table there; an older FILE becomes FILE~", AT(output), 0, 0},
+	{"output", 'o', KIND_TEXT, EXPORT, NOT_RECORDED, "FILE", "write it there, not to standard output", AT(output),
+	 0, 0},
+	{"format", 0, KIND_FORMAT, EXPORT, NOT_RECORDED, "NAME", "what to write", AT(format), 0, 0},
+	{"output", 'o', KIND_TEXT, DRAWS, NOT_RECORDED, "DIR", "the directory to write to; made if it is not there",
+	 AT(output), 0, 0},
+	{"json", 0, KIND_ON, TABLES | MERGE | EVAL | INFO | NDF | SAMPLE | RENDER, NOT_RECORDED, NULL,
+	 "JSON instead of CSV", AT(json), 0, 0},
+	{"table", 0, KIND_ON, TABLES | MERGE | EVAL | INFO | NDF | SAMPLE | RENDER, NOT_RECORDED, NULL,
+	 "a readable table on standard output even if that is no terminal", AT(readable), 0, 0},
+	{"resume", 0, KIND_ON, FIT, NOT_RECORDED, NULL,
+	 "keep the rows of -o FILE that were made from the same bytes with the same options", AT(resume), 0, 0},
+	{"shard", 0, KIND_SHARD, FIT, NOT_RECORDED, "I/N",
+	 "fit only share I of N of the files: of their sorted list every N-th, beginning with the I-th", AT(shard), 1,
+	 100000},
+	{"recursive", 'r', KIND_ON, FITS | MERGE | RENDER, NOT_RECORDED, NULL,
+	 "directories: take the files below them too", AT(recursive), 0, 0},
+	{"quiet", 'q', KIND_ON, SEARCHES | RENDER, NOT_RECORDED, NULL, "no progress line, no summary", AT(quiet), 0, 0},
+	{"quiet", 'q', KIND_ON, EXPORT, NOT_RECORDED, NULL, "no words but errors", AT(quiet), 0, 0},
+	{"threads", 0, KIND_INT, SEARCHES | MODEL | SOURCES, NOT_RECORDED, "N", "threads; changes no result",
+	 AT(fit.threads), 1, 1024},
+	{"ndf", 0, KIND_NDFS, FITS | RENDER, RECORDED_WITHIN, "LIST", "NDFs to fit, separated by commas", AT(fit.ndf),
+	 0, 0},
+	{"ndf", 0, KIND_NDFS, MODEL | BENCH | EXPORT, NOT_RECORDED, "NAME", "NDF of the model", AT(fit.ndf), 0, 0},
+	{"gaf", 0, KIND_GAF, SEARCHES | MODEL | SOURCES | NDF | SAMPLE, RECORDED, "NAME", "masking and shadowing G",
+	 AT(fit.gaf), 0, 0},
+	{"lambda", 0, KIND_LAMBDA, SEARCHES | MODEL | SOURCES | NDF | SAMPLE, RECORDED, "FORM",
+	 "form of Lambda of STD and its family; other NDFs have the exact one only", AT(fit.lambda), 0, 0},
+	{"fresnel", 0, KIND_FRESNEL, SEARCHES | MODEL | SOURCES, RECORDED, "NAME", "Fresnel term F", AT(fit.fresnel), 0,
+	 0},
+	{"weight", 0, KIND_WEIGHT, SEARCHES | SOURCES, RECORDED, "NAME", "how an entry counts in the error",
+	 AT(fit.weight), 0, 0},
+	{"bins", 0, KIND_BINS, SEARCHES | MODEL | SOURCES | INFO, RECORDED, "NAME",
+	 "where the entries of a table stand", AT(fit.bins), 0, 0},
+	{"max-theta", 0, KIND_NUMBER, SEARCHES | EVAL | SOURCES, RECORDED, "DEG",
+	 "leave out entries whose theta_i or theta_o exceeds this", AT(fit.max_theta), 1, 90},
+	{"unbounded", 0, KIND_ON, SEARCHES | SOURCES, RECORDED, NULL, "kd and ks may exceed 1", AT(fit.unbounded), 0,
+	 0},
+	{"no-diffuse", 0, KIND_OFF, SEARCHES | SOURCES, RECORDED, NULL, "kd = 0", AT(fit.diffuse), 0, 0},
+	{"no-specular", 0, KIND_OFF, SEARCHES | SOURCES, RECORDED, NULL, "ks = 0", AT(fit.specular), 0, 0},
+	{"gray", 0, KIND_ON, SEARCHES | SOURCES, RECORDED, NULL, "one kd and one ks for the three channels",
+	 AT(fit.gray), 0, 0},
+	{"ior", 0, KIND_NUMBER, SEARCHES, RECORDED, "N", "fix the index of refraction", AT(fit.ior), FIT_IOR_MIN,
+	 FIT_IOR_MAX},
+	{"gamma", 0, KIND_GAMMA, SEARCHES, RECORDED, "G", "fix the shape gamma (STD: above 1.5; inf is Beckmann)",
+	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
+	{"sigma", 0, KIND_NUMBER, SEARCHES, RECORDED, "S", "fix the roughness", AT(fit.sigma), FIT_SIGMA_MIN,
+	 FIT_SIGMA_MAX},
+	{"algorithm", 0, KIND_ALGORITHM, FIT, RECORDED_ALGORITHM, "NAME",
+	 "the search; others than the default search the full table with nlopt until --time is up, kd and ks solved "
+	 "for "
+	 "inside or (-joint) searched as well",
+	 AT(fit.algorithm), 0, 0},
+	{"algorithm", 0, KIND_ALGORITHMS, BENCH, NOT_RECORDED, "LIST",
+	 "searches to run, separated by commas; all if not given", AT(algorithm), 0, 0},
+	{"forms", 0, KIND_ON, BENCH, NOT_RECORDED, NULL,
+	 "the forms of Lambda instead of algorithms: one fit each by the default search", AT(forms), 0, 0},
+	{"time", 0, KIND_NUMBER, FIT, RECORDED_ALGORITHM, "SECONDS",
+	 "for each fit by another --algorithm than the default; its results then depend on the machine", AT(fit.time_s),
+	 1e-3, 1e6},
+	{"time", 0, KIND_NUMBER, BENCH, NOT_RECORDED, "SECONDS", "for each algorithm", AT(fit.time_s), 1e-3, 1e6},
+	{"trace", 0, KIND_TEXT, FIT, NOT_RECORDED, "FILE.csv",
+	 "write there how the best error of each search fell with evaluations and seconds; the default's stages scan "
+	 "and "
+	 "thin-N tell the error of a sample of the table, an estimate",
+	 AT(trace), 0, 0},
+	{"trace", 0, KIND_TEXT, BENCH, NOT_RECORDED, "FILE.csv",
+	 "write the curves there: how the error of each algorithm fell with evaluations and seconds", AT(trace), 0, 0},
+	{"starts", 0, KIND_INT, FITS, RECORDED, "N", "more searches, from random shapes", AT(fit.starts), 0, 100000},
+	{"seed", 0, KIND_SEED, SEARCHES, RECORDED, "N", "seed of the random shapes", AT(fit.seed), 0, 0},
+	{"within", 0, KIND_PERCENT, FIT, RECORDED_WITHIN, "P%",
+	 "per material only the simplest model whose error is within P% of the best", AT(within), 0, 1000},
+	{"sigma", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "S", "roughness", AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
+	{"gamma", 0, KIND_GAMMA, MODEL, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann)",
+	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
+	{"ior", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "N", "index of refraction", AT(fit.ior), FIT_IOR_MIN, FIT_IOR_MAX},
+	{"sigma", 0, KIND_NUMBER, SOURCES, NOT_RECORDED, "S", "roughness: given with --ks, else fixed in the fit",
+	 AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
+	{"gamma", 0, KIND_GAMMA, SOURCES, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann), likewise",
+	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
+	{"ior", 0, KIND_NUMBER, SOURCES, NOT_RECORDED, "N", "index of refraction, likewise; with --ks 1.5 if not given",
+	 AT(fit.ior), FIT_IOR_MIN, FIT_IOR_MAX},
+	{"k", 0, KIND_NUMBER, MODEL | SOURCES, NOT_RECORDED, "K", "imaginary part of a conductor's index", AT(k), 0,
+	 FIT_K_MAX},
+	{"kd", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "diffuse factors", AT(kd), 0, FIT_FACTOR_MAX},
+	{"ks", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "specular factors", AT(ks), 0, FIT_FACTOR_MAX},
+	{"from", 0, KIND_TEXT, EVAL | SOURCES | NDF | SAMPLE, NOT_RECORDED, "FILE.csv",
+	 "take the model from the row of this material (and --ndf, if given); FILE.json: from a model's JSON", AT(from),
+	 0, 0},
+	{"row", 0, KIND_INT, EVAL | SOURCES | NDF | SAMPLE, NOT_RECORDED, "N", "take row N of --from, counted from 1",
+	 AT(row), 1, INT_MAX},
+	{"phi", 0, KIND_PHI, SYNTH, NOT_RECORDED, "180|360", "entries along phi_d", AT(n_phi_d), 0, 0},
+	{"noise", 0, KIND_NUMBER, SYNTH, NOT_RECORDED, "REL", "standard deviation of a factor 1 + noise on each value",
+	 AT(noise), 0, 10},
+	{"seed", 0, KIND_SEED, SYNTH, NOT_RECORDED, "N", "seed of the noise", AT(fit.seed), 0, 0},
+	{"sigma", 0, KIND_WORD, NDF | SAMPLE, NOT_RECORDED, "SX[,SY]", "roughness, along x and y if the NDF has two",
+	 AT(sigma_words), 0, 0},
+	{"gamma", 0, KIND_WORD, NDF | SAMPLE, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann)",
+	 AT(gamma_words), 0, 0},
+	{"params", 0, KIND_WORD, NDF | SAMPLE, NOT_RECORDED, "P",
+	 "other parameters, name=value;...: x of t-family, B and C of low, D0 to D90 of pl, alpha_x, alpha_y, theta_x, "
+	 "theta_y, theta_z (degrees) of the ellipsoid",
+	 AT(params), 0, 0},
+	{"theta", 0, KIND_WORD, NDF, NOT_RECORDED, "LIST", "polar angles, degrees: START:END:STEP or A,B,...",
+	 AT(theta), 0, 0},
+	{"phi", 0, KIND_WORD, NDF, NOT_RECORDED, "LIST", "azimuths, degrees, likewise; 0 if not given", AT(phi), 0, 0},
+	{"theta-i", 0, KIND_NUMBER, NDF | SAMPLE, NOT_RECORDED, "DEG",
+	 "direction from which normals are seen, at azimuth 0", AT(theta_i), 0, 89.999999},
+	{"sampling", 0, KIND_SAMPLING, SAMPLE, NOT_RECORDED, "NAME",
+	 "which normals; with --theta-i the visible ones where the NDF can, else all", AT(sampling), 0, 0},
+	{"count", 0, KIND_INT, SAMPLE, NOT_RECORDED, "N", "how many", AT(count), 1, 1000000},
+	{"seed", 0, KIND_SEED, SAMPLE, NOT_RECORDED, "N", "seed of the random numbers", AT(fit.seed), 0, 0},
+	{"pictures", 0, KIND_ON, COMPARE, NOT_RECORDED, NULL,
+	 "render each model and its measured table, too, and show delta E and SSIM of the pictures", AT(pictures), 0,
+	 0},
+	{"output", 'o', KIND_TEXT, RENDER, NOT_RECORDED, "FILE", "the picture: FILE.png (sRGB) or FILE.pfm (linear)",
+	 AT(picture), 0, 0},
+	{"environment", 'e', KIND_TEXT, RENDER | REPORT, NOT_RECORDED, "NAME",
+	 "studio, sky or lights, or a map of latitude and longitude, FILE.hdr or FILE.pfm (default: studio)",
+	 AT(environment), 0, 0},
+	{"light", 0, KIND_TEXT, RENDER | REPORT, NOT_RECORDED, "X,Y,Z[,E][;...]",
+	 "point lights in these directions (x right, y up, z to the viewer), of irradiance E (pi), instead of the "
+	 "default "
+	 "environment or beside the one that is given",
+	 AT(light), 0, 0},
+	{"exposure", 0, KIND_NUMBER, RENDER | REPORT, NOT_RECORDED, "STOPS", "the light times 2^STOPS", AT(exposure),
+	 -20, 20},
+	{"size", 0, KIND_INT, RENDER | REPORT, NOT_RECORDED, "N", "width and height of a sphere's picture, pixels",
+	 AT(size), 8, 4096},
+	{"samples", 0, KIND_INT, RENDER | REPORT, NOT_RECORDED, "N", "samples per pixel, best a power of two",
+	 AT(pixel_samples), 1, 65536},
+	{"sampling", 0, KIND_SAMPLING, RENDER, NOT_RECORDED, "NAME", "normals by which directions are sampled",
+	 AT(sampling), 0, 0},
+	{"seed", 0, KIND_SEED, RENDER, NOT_RECORDED, "N", "seed of the samples", AT(fit.seed), 0, 0},
+	{"difference", 0, KIND_ON, RENDER, NOT_RECORDED, NULL,
+	 "show differences in false colours for several materials, too", AT(difference), 0, 0},
+	{NULL, 0, KIND_ON, 0, NOT_RECORDED, NULL, NULL, 0, 0, 0},
+};
+
+_Static_assert(sizeof option_specs / sizeof *option_specs <= OPTIONS_MAX,
+	       "struct options.given has a place per option");
+
+const char *option_choice(enum option_kind kind, int i)
+{
+	switch (kind) {
+	case KIND_NDFS:
+		return ndf_at(i) ? ndf_name(ndf_at(i)) : NULL;
+	case KIND_GAF:
+		return i < GAF_COUNT ? gaf_name((enum gaf)i) : NULL;
+	case KIND_LAMBDA:
+		return i < LAMBDA_FORM_COUNT ? lambda_form_name((enum lambda_form)i) : NULL;
+	case KIND_FRESNEL:
+		return i < FRESNEL_COUNT ? fresnel_name((enum fresnel)i) : NULL;
+	case KIND_WEIGHT:
+		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
+	case KIND_BINS:
+		return i < BINS_COUNT ? bins_name((enum bins)i) : NULL;
+	case KIND_PHI:
+		return i < 2 ? (i ? "360" : "180") : NULL;
+	case KIND_SAMPLING:
+		return i < SAMPLING_COUNT ? sampling_name((enum sampling)i) : NULL;
+	case KIND_FORMAT:
+		return i < EXPORT_FORMATS ? export_format_name((enum export_format)i) : NULL;
+	case KIND_ALGORITHM:
+	case KIND_ALGORITHMS:
+		return i < ALGORITHM_COUNT ? algorithm_name(algorithm_at(i)) : NULL;
+	default:
+		return NULL;
+	}
+}
+
+static enum status choice_find(enum option_kind kind, const char *text, void *value)
+{
+	switch (kind) {
+	case KIND_GAF:
+		return gaf_find(text, value);
+	case KIND_LAMBDA:
+		return lambda_form_find(text, value);
+	case KIND_FRESNEL:
+		return fresnel_find(text, value);
+	case KIND_WEIGHT:
+		return weight_find(text, value);
+	case KIND_SAMPLING:
+		return sampling_find(text, value);
+	case KIND_FORMAT:
+		return export_format_find(text, value);
+	case KIND_ALGORITHM:
+		return algorithm_find(text, value);
+	default:
+		return bins_find(text, value);
+	}
+}
+
+/* Values from text. Each returns STATUS_DOMAIN, with what was expected, when the text is none. */
+
+static enum status expected_range(const struct option_spec *spec, struct error *error)
+{
+	char min[CSV_NUMBER_SIZE], max[CSV_NUMBER_SIZE];
+	return error_set(error, STATUS_DOMAIN, "expected a%s number from %s to %s%s",
+			 spec->kind == KIND_INT ? " whole" : "", csv_number(min, spec->min), csv_number(max, spec->max),
+			 spec->kind == KIND_GAMMA ? ", or inf" : "");
+}
+
+static bool in_range(const struct option_spec *spec, double x)
+{
+	return (x >= spec->min && x <= spec->max) || (spec->kind == KIND_GAMMA && x == INFINITY);
+}
+
+static enum status parse_number(const struct option_spec *spec, const char *text, double *value, struct error *error)
+{
+	double x;
+	if (!*text || !csv_parse_number(text, &x) || !in_range(spec, x))
+		return expected_range(spec, error);
+	*value = x;
+	return STATUS_OK;
+}
+
+static enum status parse_percent(const struct option_spec *spec, const char *text, double *value, struct error *error)
+{
+	char number[CSV_NUMBER_SIZE];
+	const size_t length = strlen(text), percent = length && text[length - 1] == '%';
+	if (length >= sizeof number)
+		return expected_range(spec, error);
+	memcpy(number, text, length - percent);
+	number[length - percent] = '\0';
+	return parse_number(spec, number, value, error);
+}
+
+static enum status parse_int(const struct option_spec *spec, const char *text, int *value, struct error *error)
+{
+	char *end;
+	errno = 0;
+	const long x = strtol(text, &end, 10);
+	if (end == text || isspace((unsigned char)*text) || *end || errno || !in_range(spec, (double)x))
+		return expected_range(spec, error);
+	*value = (int)x;
+	return STATUS_OK;
+}
+
+static enum status parse_seed(const char *text, uint64_t *value, struct error *error)
+{
+	char *end;
+	errno = 0;
+	const unsigned long long x = strtoull(text, &end, 10);
+	if (text[strspn(text, "0123456789")] || end == text || errno)
+		return error_set(error, STATUS_DOMAIN, "expected a whole number from 0 to %" PRIu64, UINT64_MAX);
+	*value = x;
+	return STATUS_OK;
+}
+
+static enum status parse_shard(const struct option_spec *spec, const char *text, struct shard *shard,
+			       struct error *error)
+{
+	char number[CSV_NUMBER_SIZE];
+	struct shard found = {0};
+	const size_t length = strcspn(text, "/");
+	snprintf(number, sizeof number, "%.*s", (int)(length % sizeof number), text);
+	if (length >= sizeof number || !text[length] || parse_int(spec, number, &found.i, NULL) ||
+	    parse_int(spec, text + length + 1, &found.n, NULL) || found.i > found.n)
+		return error_set(error, STATUS_DOMAIN, "expected I/N, share I of N, as 1/4 to 4/4; N at most %g",
+				 spec->max);
+	*shard = found;
+	return STATUS_OK;
+}
+
+static enum status parse_phi(const char *text, int *value, struct error *error)
+{
+	if (strcmp(text, "180") && strcmp(text, "360"))
+		return error_set(error, STATUS_DOMAIN, "expected 180 or 360");
+	*value = strcmp(text, "180") ? 360 : 180;
+	return STATUS_OK;
+}
+
+/* Copies the part of a list before the next comma; returns what stands behind that, NULL at the end. What does not fit is
+ * no item of any list and leaves "". */
+static const char *next_item(const char *text, char *item, size_t size)
+{
+	const size_t length = strcspn(text, ",");
+	snprintf(item, size, "%.*s", length < size ? (int)length : 0, text);
+	return text[length] ? text + length + 1 : NULL;
+}
+
+static enum status parse_rgb(const struct option_spec *spec, const char *text, double value[3], struct error *error)
+{
+	char item[CSV_NUMBER_SIZE];
+	double rgb[3] = {0, 0, 0};
+	int n = 0;
+	for (const char *rest = text; rest; n++) {
+		rest = next_item(rest, item, sizeof item);
+		if (n == 3 || parse_number(spec, item, &rgb[n], NULL))
+			return error_set(error, STATUS_DOMAIN, "expected R,G,B or one number, each from %g to %g",
+					 spec->min, spec->max);
+	}
+	if (n == 2)
+		return error_set(error, STATUS_DOMAIN, "expected three numbers R,G,B or one, found two");
+	for (int c = 0; c < 3; c++)
+		value[c] = rgb[n == 3 ? c : 0];
+	return STATUS_OK;
+}
+
+static enum status expected_choice(enum option_kind kind, struct error *error)
+{
+	char names[256] = "";
+	for (int i = 0; option_choice(kind, i); i++) {
+		strncat(names, i ? ", " : "", sizeof names - strlen(names) - 1);
+		strncat(names, option_choice(kind, i), sizeof names - strlen(names) - 1);
+	}
+	return error_set(error, STATUS_DOMAIN, "expected one of %s", names);
+}
+
+static enum status parse_ndfs(const char *text, struct fit_options *fit, struct error *error)
+{
+	char name[64], shown[TEXT_QUOTE_SIZE];
+	int n = 0;
+	for (const char *rest = text; rest; n++) {
+		rest = next_item(rest, name, sizeof name);
+		const struct ndf_class *ndf = ndf_find(name);
+		if (!ndf)
+			return expected_choice(KIND_NDFS, error);
+		text_quote(name, shown, sizeof shown);
+		for (int i = 0; i < n; i++)
+			if (fit->ndf[i] == ndf)
+				return error_set(error, STATUS_DOMAIN, "'%s' stands there twice", shown);
+		if (n == FIT_NDFS_MAX)
+			return error_set(error, STATUS_DOMAIN, "expected at most %d names", FIT_NDFS_MAX);
+		fit->ndf[n] = ndf;
+	}
+	fit->n_ndf = n;
+	return STATUS_OK;
+}
+
+static enum status parse_algorithms(const char *text, struct options *options, struct error *error)
+{
+	char name[64];
+	int n = 0;
+	for (const char *rest = text; rest; n++) {
+		const struct algorithm *algorithm;
+		rest = next_item(rest, name, sizeof name);
+		if (algorithm_find(name, &algorithm))
+			return expected_choice(KIND_ALGORITHMS, error);
+		for (int i = 0; i < n; i++)
+			if (options->algorithm[i] == algorithm)
+				return error_set(error, STATUS_DOMAIN, "'%s' stands there twice", name);
+		options->algorithm[n] = algorithm;
+	}
+	options->n_algorithms = n;
+	return STATUS_OK;
+}
+
+enum status option_parse(struct options *options, const struct option_spec *spec, const char *text, struct error *error)
+{
+	void *value = (char *)options + spec->offset;
+	switch (spec->kind) {
+	case KIND_ON:
+	case KIND_OFF:
+		*(bool *)value = spec->kind == KIND_ON;
+		return STATUS_OK;
+	case KIND_TEXT:
+	case KIND_WORD:
+		*(const char **)value = text;
+		return *text ? STATUS_OK : error_set(error, STATUS_DOMAIN, "expected a name");
+	case KIND_INT:
+		return parse_int(spec, text, value, error);
+	case KIND_SEED:
+		return parse_seed(text, value, error);
+	case KIND_NUMBER:
+	case KIND_GAMMA:
+		return parse_number(spec, text, value, error);
+	case KIND_PERCENT:
+		return parse_percent(spec, text, value, error);
+	case KIND_RGB:
+		return parse_rgb(spec, text, value, error);
+	case KIND_SHARD:
+		return parse_shard(spec, text, value, error);
+	case KIND_PHI:
+		return parse_phi(text, value, error);
+	case KIND_NDFS:
+		return parse_ndfs(text, &options->fit, error);
+	case KIND_ALGORITHMS:
+		return parse_algorithms(text, options, error);
+	default:
+		return choice_find(spec->kind, text, value) ? expected_choice(spec->kind, error) : STATUS_OK;
+	}
+}
+
+/* Values as text */
+
+static void write_ndfs(FILE *file, const struct fit_options *fit)
+{
+	for (int i = 0; i < fit->n_ndf; i++)
+		fprintf(file, "%s%s", i ? "," : "", ndf_name(fit->ndf[i]));
+}
+
+static void write_algorithms(FILE *file, const struct options *options)
+{
+	for (int i = 0; i < options->n_algorithms; i++)
+		fprintf(file, "%s%s", i ? "," : "", algorithm_name(options->algorithm[i]));
+}
+
+void option_write(FILE *file, const struct options *options, const struct option_spec *spec)
+{
+	const void *value = (const char *)options + spec->offset;
+	char number[CSV_NUMBER_SIZE];
+	switch (spec->kind) {
+	case KIND_ON:
+	case KIND_OFF:
+		fputs(*(const bool *)value == (spec->kind == KIND_ON) ? "yes" : "no", file);
+		break;
+	case KIND_TEXT:
+	case KIND_WORD:
+		fputs(*(const char *const *)value ? *(const char *const *)value : "", file);
+		break;
+	case KIND_INT:
+	case KIND_PHI:
+		fprintf(file, "%d", *(const int *)value);
+		break;
+	case KIND_SHARD:
+		fprintf(file, "%d/%d", ((const struct shard *)value)->i, ((const struct shard *)value)->n);
+		break;
+	case KIND_SEED:
+		fprintf(file, "%" PRIu64, *(const uint64_t *)value);
+		break;
+	case KIND_NUMBER:
+	case KIND_GAMMA:
+	case KIND_PERCENT:
+	case KIND_RGB:
+		fputs(isnan(*(const double *)value) ? "free" : csv_number(number, *(const double *)value), file);
+		break;
+	case KIND_NDFS:
+		write_ndfs(file, &options->fit);
+		break;
+	case KIND_GAF:
+		fputs(gaf_name(*(const enum gaf *)value), file);
+		break;
+	case KIND_LAMBDA:
+		fputs(lambda_form_name(*(const enum lambda_form *)value), file);
+		break;
+	case KIND_FRESNEL:
+		fputs(fresnel_name(*(const enum fresnel *)value), file);
+		break;
+	case KIND_WEIGHT:
+		fputs(weight_name(*(const enum weight *)value), file);
+		break;
+	case KIND_BINS:
+		fputs(bins_name(*(const enum bins *)value), file);
+		break;
+	case KIND_SAMPLING:
+		fputs(sampling_name(*(const enum sampling *)value), file);
+		break;
+	case KIND_FORMAT:
+		fputs(export_format_name(*(const enum export_format *)value), file);
+		break;
+	case KIND_ALGORITHM:
+		fputs(algorithm_name(*(const struct algorithm *const *)value), file);
+		break;
+	case KIND_ALGORITHMS:
+		write_algorithms(file, options);
+		break;
+	}
+}
+
+bool option_applies(const struct option_spec *spec, enum command command)
+{
+	return spec->commands & 1u << command;
+}
+
+static bool has_default(const struct options *defaults, const struct option_spec *spec)
+{
+	if (!spec->argument || spec->kind == KIND_TEXT || spec->kind == KIND_WORD || spec->kind == KIND_SAMPLING ||
+	    spec->kind == KIND_PERCENT || spec->kind == KIND_ALGORITHMS || spec->kind == KIND_SHARD ||
+	    spec->kind == KIND_FORMAT)
+		return false;
+	const void *value = (const char *)defaults + spec->offset;
+	if (spec->kind == KIND_INT)
+		return *(const int *)value >= spec->min;
+	/* A free number is a default of a fit; a model needs one. */
+	return spec->recorded != NOT_RECORDED || (spec->kind != KIND_NUMBER && spec->kind != KIND_GAMMA) ||
+	       !isnan(*(const double *)value);
+}
+
+void option_describe(FILE *file, const struct options *defaults, const struct option_spec *spec)
+{
+	fputs(spec->help, file);
+	for (int i = 0; option_choice(spec->kind, i); i++)
+		fprintf(file, "%s%s", i ? ", " : ": ", option_choice(spec->kind, i));
+	if (has_default(defaults, spec)) {
+		fputs(" (default: ", file);
+		option_write(file, defaults, spec);
+		fputs(")", file);
+	}
+}

@@ -1,0 +1,486 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/cli/options.h"
+#include "data_readers/text_quote.h"
+#include "fit/cli/files.h"
+#include "fit/cli/option_value.h"
+#include "fit/cli/report.h"
+#include "fit/error/objective.h"
+#include "fit/results/csv.h"
+
+#include <getopt.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const struct command_text commands[COMMAND_COUNT] = {
+	[COMMAND_FIT] = {"fit", "PATH...", "fit MERL files",
+			 "Fits a Cook-Torrance model with each NDF to each MERL file. A directory stands for\n"
+			 "every *.binary in it. A terminal shows a readable table, a pipe gets CSV. With -o, rows\n"
+			 "are appended as files are done and put in order at the end, so that Ctrl-C or a kill\n"
+			 "loses nothing that was done; --resume goes on from there.\n"},
+	[COMMAND_COMPARE] = {"compare", "PATH...", "errors of the NDFs side by side, per material and in all",
+			     "Fits MERL files or directories, or takes one result table (FILE.csv) as it is. Shows\n"
+			     "the error of each NDF, the winner, by how much STD's error is lower than GGX's and\n"
+			     "Beckmann's (in % of theirs), then mean, median, worst and wins.\n"},
+	[COMMAND_MERGE] = {"merge", "CSV... [PATH...]", "join the tables of a batch's shares (fit --shard) into one",
+			   "Writes the table that one run over all files would have written. It refuses rows made\n"
+			   "with other options or by another version, rows of the same file and NDF that differ (in\n"
+			   "more than seconds), files that lack an NDF that others have, and what is no whole table\n"
+			   "of stdfit fit. Given the files or directories that were fitted, too, it refuses unless\n"
+			   "each file has its rows, and no other: so no share is missing or unfinished. Equal rows\n"
+			   "may stand in several tables; the seconds are those of the first. Failed rows stay.\n"},
+	[COMMAND_BENCH] =
+		{"bench", "FILE", "error against run time, the default search beside others",
+		 "Fits one NDF to one MERL file, read already, with one algorithm after the other, each alone\n"
+		 "on all threads, and shows the error that each had reached after 0.1, 0.3, 1, 3 and 10 s, at\n"
+		 "the end of --time, and the shapes it had evaluated. Every error is that of the full table:\n"
+		 "shapes that the default search judged by a sample of the table are judged anew afterwards.\n"
+		 "Its seconds include that sampling and, for std, the fits of ggx and beckmann inside; where\n"
+		 "it ends early its error stays. The figures depend on the machine and on what else it does.\n"
+		 "With --forms it fits with each form of Lambda instead, and shows the error, that of the same\n"
+		 "parameters with the exact Lambda, and what the search took. integer and half-integer fit\n"
+		 "every gamma they have; where a form does not take a fixed --gamma, its row is empty.\n"},
+	[COMMAND_EVAL] = {"eval", "FILE", "error of given parameters, no fit",
+			  "Measures how far a model is from a MERL file, under every weight and metric. The model\n"
+			  "comes from options, or from rows of a result table (--from), which also bring their\n"
+			  "G, Fresnel term, bins and largest theta.\n"},
+	[COMMAND_INFO] = {"info", "FILE...", "what is in a MERL file: validity, ranges, suspects",
+			  "Shows size, hash, valid, negative and non-finite entries, and the range of the valid\n"
+			  "values above the horizon per channel (1/sr).\n"},
+	[COMMAND_EXPORT] =
+		{"export", "[FILE]", "a model for another program: BRDF Explorer, Mitsuba 3, pbrt-v4, glTF, ...",
+		 "Writes one model: fitted to FILE, from the row of FILE's material in a result table, from\n"
+		 "any row of it (--row), or from given parameters (--kd, --ks, ...). The first lines say\n"
+		 "whether the export is exact or approximate, and why. Where the target has no such model, one\n"
+		 "that it has is fitted in its place, to FILE or the file of the row if that can be read, else\n"
+		 "to the model's own table; the export says what that costs in error.\n"},
+	[COMMAND_NDF] =
+		{"ndf", "[NAME]", "D, P22, P2, Lambda, G1 and pdf of a distribution as a table",
+		 "Tabulates a normal distribution function: D and pdf of the normal at theta and phi, P22 of its\n"
+		 "slope, P2 of the slope tan(theta) along phi, Lambda and G1 of the direction there; with --theta-i\n"
+		 "the density of the normal among those visible, and the weight of such a sample. NAME is an NDF,\n"
+		 "ellipsoid, or - for rows of standard input: a CSV with the columns ndf, sigma, sigma_y, gamma,\n"
+		 "params, lambda, theta, phi, theta_i, as far as needed. With --from, the NDFs of a result table.\n"},
+	[COMMAND_SAMPLE] =
+		{"sample", "[NAME]", "random normals of a distribution, and where they reflect to",
+		 "Draws normals m, visible or all, with their density. With --theta-i also the direction wo into\n"
+		 "which each reflects, its density, and its weight: the mean of the weights is the directional\n"
+		 "albedo of the lobe without its Fresnel term.\n"},
+	[COMMAND_SYNTH] = {"synth", "OUT.binary", "write a MERL file of a model",
+			   "Writes the table that an ideal measurement of the model would give; -1 below the\n"
+			   "horizon.\n"},
+	[COMMAND_RENDER] =
+		{"render", "PATH...", "spheres of measured materials beside those of their models, as PNG",
+		 "Renders a sphere of each measured table and of each model of it in the same light, one row a\n"
+		 "material, with their differences in false colours if there is one material only. The models\n"
+		 "are fitted, taken from a result table (--from, or FILE.csv as the only path: the files it\n"
+		 "names), or given (--kd, --ks, ...). Reports how different model and table look: rmse of linear\n"
+		 "values, delta_e the mean CIEDE2000, ssim the structural similarity.\n"},
+	[COMMAND_PLOT] =
+		{"plot", "PATH...", "fits, or the course of searches, as plots by gnuplot",
+		 "Takes a result table (FILE.csv), or fits MERL files or directories. Writes into the directory\n"
+		 "of -o the errors of all materials, sorted; and per material D and G1 of each fit against the\n"
+		 "NDF read off the data, slices, measured against fitted, and the error over theta_h and\n"
+		 "theta_d: each as PNG, SVG, CSV and the script that draws it. Of a trace (see fit --trace) it\n"
+		 "draws the error against time.\n"},
+	[COMMAND_REPORT] =
+		{"report", "PATH...", "fits as one HTML page that needs no other file",
+		 "Takes a result table (FILE.csv), or fits MERL files or directories. Writes index.html into the\n"
+		 "directory of -o: a summary, a table that can be sorted, and per material its spheres (see\n"
+		 "stdfit render), plots (see stdfit plot), parameters, their certainty, options and versions.\n"},
+};
+
+const struct command_text *options_command(enum command command)
+{
+	return &commands[command];
+}
+
+static bool is_recorded(const struct options *options, const struct option_spec *spec)
+{
+	switch (spec->recorded) {
+	case RECORDED:
+		return true;
+	case RECORDED_WITHIN:
+		return !isnan(options->within);
+	case RECORDED_ALGORITHM:
+		return options->fit.algorithm;
+	default:
+		return false;
+	}
+}
+
+char *options_text(const struct options *options)
+{
+	char *text = NULL;
+	size_t size;
+	FILE *file = open_memstream(&text, &size);
+	if (!file)
+		return NULL;
+	const char *between = "";
+	for (const struct option_spec *spec = option_specs; spec->name; spec++) {
+		if (!is_recorded(options, spec))
+			continue;
+		fprintf(file, "%s%s=", between, spec->name);
+		option_write(file, options, spec);
+		between = " ";
+	}
+	const bool failed = ferror(file);
+	if (fclose(file) || failed) {
+		free(text);
+		return NULL;
+	}
+	return text;
+}
+
+/* Help */
+
+enum { HELP_WIDTH = 21 };
+
+static void print_option(const struct options *defaults, const struct option_spec *spec)
+{
+	char name[64];
+	snprintf(name, sizeof name, "--%s %s", spec->name, spec->argument ? spec->argument : "");
+	if (spec->letter)
+		printf("  -%c, %-*s ", spec->letter, HELP_WIDTH, name);
+	else
+		printf("      %-*s ", HELP_WIDTH, name);
+	option_describe(stdout, defaults, spec);
+	printf("\n");
+}
+
+static void print_help(const struct options *defaults)
+{
+	const enum command command = defaults->command;
+	printf("usage: stdfit %s%s%s [OPTION]... %s\n\n%s\noptions:\n", command == COMMAND_FIT ? "[" : "",
+	       commands[command].name, command == COMMAND_FIT ? "]" : "", commands[command].arguments,
+	       commands[command].help);
+	for (const struct option_spec *spec = option_specs; spec->name; spec++)
+		if (option_applies(spec, command))
+			print_option(defaults, spec);
+	printf("  -h, %-*s this text\n", HELP_WIDTH, "--help");
+	printf("\nexit code: 0 done, 1 some file failed, 2 wrong usage, 130 interrupted\n");
+}
+
+void options_overview(void)
+{
+	printf("stdfit fits Cook-Torrance models with STD, GGX and Beckmann NDFs to measured BRDFs.\n\n");
+	for (enum command c = 0; c < COMMAND_COUNT; c++)
+		printf("  stdfit %-7s %-10s  %s\n", c == COMMAND_FIT ? "[fit]" : commands[c].name,
+		       commands[c].arguments, commands[c].summary);
+	printf("\n`stdfit COMMAND --help` tells its options, `stdfit --version` the versions of the program and its "
+	       "libraries.\n`stdfit --man` writes the manual page, `stdfit --completion bash` and `zsh` what these "
+	       "shells need\nto complete command lines.\n");
+}
+
+enum command options_find_command(const char *name)
+{
+	enum command c = 0;
+	while (c < COMMAND_COUNT && strcmp(commands[c].name, name))
+		c++;
+	return c;
+}
+
+/* The command line */
+
+int options_usage(enum command command, const char *format, ...)
+{
+	struct error text;
+	va_list list;
+	va_start(list, format);
+	vsnprintf(text.text, sizeof text.text, format, list);
+	va_end(list);
+	report_error("%s (see stdfit %s --help)", text.text, commands[command].name);
+	return EXIT_USAGE;
+}
+
+struct options options_default(enum command command)
+{
+	struct options options = {
+		.fit = fit_options_default(),
+		.command = command,
+		.within = NAN,
+		.n_phi_d = 180,
+		.theta_i = NAN,
+		.count = 1000,
+		.ks = {0, 0, 0},
+		.kd = {0, 0, 0},
+		.environment = "studio",
+		.size = 256,
+		.pixel_samples = 64,
+	};
+	if (command == COMMAND_EVAL || command == COMMAND_SYNTH) {
+		options.fit.n_ndf = 1;
+		options.fit.ior = 1.5;
+	}
+	if (command == COMMAND_REPORT) { /* small: a page may hold a hundred of these */
+		options.size = 112;
+		options.pixel_samples = 32;
+	}
+	if (command == COMMAND_BENCH || command == COMMAND_EXPORT)
+		options.fit.n_ndf = 1;
+	return options;
+}
+
+enum { LONG_OPTION = 256 }; /* what getopt_long returns for row i of the table is this + i */
+
+/* Fills getopt_long's own table and short letters; see options_parse for their room. */
+static void fill_getopt(enum command command, struct option *longs, char *letters)
+{
+	*letters++ = ':'; /* tell a missing argument from an unknown option */
+	*letters++ = 'h';
+	*longs++ = (struct option){"help", no_argument, NULL, 'h'};
+	for (int i = 0; option_specs[i].name; i++) {
+		if (!option_applies(&option_specs[i], command))
+			continue;
+		const int argument = option_specs[i].argument ? required_argument : no_argument;
+		*longs++ = (struct option){option_specs[i].name, argument, NULL, LONG_OPTION + i};
+		if (option_specs[i].letter) {
+			*letters++ = (char)option_specs[i].letter;
+			if (argument == required_argument)
+				*letters++ = ':';
+		}
+	}
+	*longs = (struct option){0};
+	*letters = '\0';
+}
+
+static int spec_of_letter(enum command command, int letter)
+{
+	int i = 0;
+	while (option_specs[i].letter != letter || !option_applies(&option_specs[i], command))
+		i++;
+	return i;
+}
+
+static int take_option(struct options *options, int i, const char *text)
+{
+	struct error error;
+	options->given[i] = true;
+	if (!option_parse(options, &option_specs[i], text, &error))
+		return -1;
+	char shown[TEXT_QUOTE_SIZE];
+	text_quote(text, shown, sizeof shown);
+	return options_usage(options->command, "bad value '%s' for --%s: %s", shown, option_specs[i].name, error.text);
+}
+
+static int bad_option(enum command command, int code, char **argv)
+{
+	/* getopt_long leaves the letter of a short option. --help=x, of the long ones, has a letter too. */
+	const bool takes_none = optopt >= LONG_OPTION || (code == '?' && optopt == 'h');
+	const bool is_short = optopt != 0 && optopt < LONG_OPTION && !takes_none;
+	const char letter[] = {'-', (char)optopt, '\0'};
+	char shown[TEXT_QUOTE_SIZE];
+	text_quote(is_short ? letter : argv[optind - 1], shown, sizeof shown);
+	return options_usage(command, "%s '%s'",
+			     code == ':'  ? "expected an argument behind"
+			     : takes_none ? "expected no argument in"
+					  : "unknown or ambiguous option",
+			     shown);
+}
+
+static bool any_has_gamma(const struct fit_options *fit)
+{
+	for (int i = 0; i < fit->n_ndf; i++)
+		if (ndf_has_gamma(fit->ndf[i]))
+			return true;
+	return false;
+}
+
+static bool has_tabulated(const struct fit_options *fit)
+{
+	for (int i = 0; i < fit->n_ndf; i++)
+		if (ndf_is_tabulated(fit->ndf[i]))
+			return true;
+	return false;
+}
+
+/* The first NDF, if any, that does not take the fixed gamma, exactly or in the chosen form of Lambda. */
+static const struct ndf_class *refuses_gamma(const struct fit_options *fit)
+{
+	for (int i = 0; i < fit->n_ndf; i++) {
+		const struct shape shape = {.sigma = 0.1, .gamma = fit->gamma};
+		struct ndf ndf;
+		if (ndf_has_gamma(fit->ndf[i]) && !isnan(fit->gamma) &&
+		    shape_ndf(&shape, fit->ndf[i], fit->lambda, &ndf) != STATUS_OK)
+			return fit->ndf[i];
+	}
+	return NULL;
+}
+
+/* Combinations in which some option would be ignored, or nothing could come out. */
+int options_check_fit(const struct options *options)
+{
+	const struct fit_options *fit = &options->fit;
+	if (!fit->diffuse && !fit->specular)
+		return options_usage(options->command, "--no-diffuse and --no-specular leave nothing to fit");
+	static const char *const shape[] = {"sigma", "gamma", "ior"};
+	for (size_t i = 0; i < sizeof shape / sizeof *shape; i++)
+		if (!fit->specular && options_given(options, shape[i]))
+			return options_usage(options->command, "--%s means nothing with --no-specular", shape[i]);
+	if (fit->fresnel == FRESNEL_NONE && options_given(options, "ior"))
+		return options_usage(options->command, "--ior means nothing with --fresnel none");
+	if (options_given(options, "gamma") && !any_has_gamma(fit))
+		return options_usage(options->command, "--gamma means nothing for these NDFs");
+	if (has_tabulated(fit) && (!fit->specular || fit->algorithm || options->command == COMMAND_BENCH ||
+				   options_given(options, "trace") || !isnan(options->within)))
+		return options_usage(options->command,
+				     "--ndf pl goes with neither --no-specular, --algorithm, --trace, "
+				     "--within nor bench");
+	const struct ndf_class *refusing = refuses_gamma(fit);
+	if (refusing)
+		return options_usage(options->command,
+				     "invalid value %g for --gamma: %s with --lambda %s does not take it", fit->gamma,
+				     ndf_name(refusing), lambda_form_name(fit->lambda));
+	if (options->command == COMMAND_FIT && !fit->algorithm && options_given(options, "time"))
+		return options_usage(options->command, "--time means nothing without another --algorithm than default");
+	if (fit->algorithm && options_given(options, "starts"))
+		return options_usage(options->command, "--starts means nothing with another --algorithm than default");
+	if (options->command != COMMAND_BENCH && options_given(options, "seed") && !fit->starts && !fit->algorithm)
+		return options_usage(options->command, "--seed means nothing without --starts");
+	if (options->trace && !isnan(options->within))
+		return options_usage(options->command, "--trace and --within exclude each other");
+	if (options->resume && !options->output)
+		return options_usage(options->command, "--resume needs -o FILE");
+	if (options->resume && options->json)
+		return options_usage(options->command, "--resume needs a CSV, not --json");
+	if (options->readable && options->json && !options->output)
+		return options_usage(options->command, "--table and --json exclude each other without -o");
+	return -1;
+}
+
+/* An output must not take the place of what is read, or of the other one. compare and merge keep a table that they replace
+ * beside it. What a directory holds, fit and compare look at. */
+static int check_outputs(const struct options *options)
+{
+	const char *const output[] = {options->output, options->trace};
+	const bool keeps = options->command == COMMAND_COMPARE || options->command == COMMAND_MERGE;
+	for (int o = 0; o < 2; o++) {
+		bool read = output[o] && options->from && files_same(options->from, output[o]);
+		for (int i = 0; i < options->n_paths && output[o]; i++)
+			read |= files_same(options->path[i], output[o]) && !(keeps && csv_is_name(options->path[i]));
+		if (read)
+			return options_usage(options->command, "--%s names a file that is to be read",
+					     o ? "trace" : "output");
+	}
+	if (options->output && options->trace && files_same(options->output, options->trace))
+		return options_usage(options->command, "--trace and --output name the same file");
+	return -1;
+}
+
+int options_parse(struct options *options, enum command command, int argc, char **argv, atomic_bool *cancel)
+{
+	struct option longs[OPTIONS_MAX + 2];
+	char letters[2 * OPTIONS_MAX + 3];
+	fill_getopt(command, longs, letters);
+	*options = options_default(command);
+	opterr = 0;
+	optind = 0;
+	for (int code; (code = getopt_long(argc, argv, letters, longs, NULL)) != -1;) {
+		if (code == 'h') {
+			const struct options defaults = options_default(command);
+			print_help(&defaults);
+			return EXIT_DONE;
+		}
+		if (code == '?' || code == ':')
+			return bad_option(command, code, argv);
+		const int i = code >= LONG_OPTION ? code - LONG_OPTION : spec_of_letter(command, code);
+		const int end = take_option(options, i, optarg ? optarg : "");
+		if (end >= 0)
+			return end;
+	}
+	options->path = argv + optind;
+	options->n_paths = argc - optind;
+	options->cancel = cancel;
+	options->fit.cancel = cancel;
+	if (!options->n_paths && commands[command].arguments[0] != '[')
+		return options_usage(command, "expected %s, found nothing", commands[command].arguments);
+	const bool fits = command == COMMAND_FIT || command == COMMAND_COMPARE || command == COMMAND_BENCH;
+	const int wrong = fits ? options_check_fit(options) : -1;
+	return wrong >= 0 ? wrong : check_outputs(options);
+}
+
+bool options_given(const struct options *options, const char *name)
+{
+	for (int i = 0; option_specs[i].name; i++)
+		if (options->given[i] && !strcmp(option_specs[i].name, name))
+			return true;
+	return false;
+}
+
+const char *options_given_beside(const struct options *options, const char *const *expected)
+{
+	for (int i = 0; option_specs[i].name; i++) {
+		const char *const *at = expected;
+		while (*at && strcmp(*at, option_specs[i].name))
+			at++;
+		if (!*at && options->given[i])
+			return option_specs[i].name;
+	}
+	return NULL;
+}
+
+/* An option that says something about a term that the model has not. */
+static int check_model(const struct options *options)
+{
+	static const char *const specular[] = {"sigma", "gamma", "ior", "k", "ndf", "gaf", "fresnel"};
+	const enum command command = options->command;
+	const struct ndf_class *ndf = options->fit.ndf[0];
+	if (options->fit.n_ndf != 1)
+		return options_usage(command, "--ndf takes one name here");
+	if (!options_given(options, "kd") && !options_given(options, "ks"))
+		return options_usage(command, "expected --kd or --ks, or both");
+	for (size_t i = 0; i < sizeof specular / sizeof *specular; i++)
+		if (!options_given(options, "ks") && options_given(options, specular[i]))
+			return options_usage(command, "--%s means nothing without --ks", specular[i]);
+	if (options_given(options, "ks") && !options_given(options, "sigma"))
+		return options_usage(command, "--ks needs --sigma");
+	if (options_given(options, "ks") && ndf_has_gamma(ndf) != options_given(options, "gamma"))
+		return options_usage(command, "--ndf %s %s", ndf_name(ndf),
+				     ndf_has_gamma(ndf) ? "needs --gamma" : "has no --gamma");
+	if (options->fit.fresnel == FRESNEL_NONE && options_given(options, "ior"))
+		return options_usage(command, "--ior means nothing with --fresnel none");
+	if (options->fit.fresnel != FRESNEL_CONDUCTOR && options_given(options, "k"))
+		return options_usage(command, "--k means nothing without --fresnel conductor");
+	return -1;
+}
+
+int options_model(const struct options *options, struct cook_torrance *model)
+{
+	const struct fit_options *fit = &options->fit;
+	const int wrong = check_model(options);
+	if (wrong >= 0)
+		return wrong;
+	*model = (struct cook_torrance){
+		.gaf = fit->gaf, .fresnel = fit->fresnel, .n = isnan(fit->ior) ? 1.5 : fit->ior, .k = options->k};
+	memcpy(model->kd, options->kd, sizeof model->kd);
+	memcpy(model->ks, options->ks, sizeof model->ks);
+	const double sigma = isnan(fit->sigma) ? 1 : fit->sigma, gamma = isnan(fit->gamma) ? 2 : fit->gamma;
+	const struct shape shape = {.sigma = sigma, .gamma = gamma};
+	if (shape_ndf(&shape, fit->ndf[0], fit->lambda, &model->ndf))
+		return options_usage(options->command, "--ndf %s does not allow these parameters",
+				     ndf_name(fit->ndf[0]));
+	return -1;
+}
+
+enum show options_show(const struct options *options)
+{
+	if (options->json && !options->output)
+		return SHOW_JSON;
+	if (options->readable || isatty(STDOUT_FILENO))
+		return SHOW_READABLE;
+	return options->output ? SHOW_NOTHING : SHOW_CSV;
+}
+
+int options_end(const struct options *options, enum status status, const struct error *error, struct csv_table *table,
+		report_readable *readable)
+{
+	if (!status)
+		report_output(table, options_show(options), readable);
+	else if (status != STATUS_INTERRUPTED)
+		report_error("%s", error->text);
+	csv_table_free(table);
+	if (*options->cancel)
+		return EXIT_INTERRUPTED;
+	return status ? EXIT_FAILED : EXIT_DONE;
+}

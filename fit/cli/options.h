@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* options - the command line: one table of options serves parsing, help and the text that results are recorded with. */
+#ifndef OPTIONS_H
+#define OPTIONS_H
+
+#include "fit/cli/command.h"
+#include "fit/cli/distribution.h"
+#include "fit/cli/files.h"
+#include "fit/cli/report.h"
+#include "fit/export/export.h"
+#include "fit/search/algorithms.h"
+#include "src/sampling.h"
+
+enum { OPTIONS_MAX = 128 }; /* rows of the option table, at most */
+
+struct options {
+	struct fit_options fit;
+	enum command command;
+	const char *output; /* NULL: standard output */
+	const char *trace;  /* a CSV of the course of each search; NULL: none */
+	struct shard shard; /* .n = 0: all files */
+	bool json, quiet, resume, recursive, readable;
+	double within; /* percent; NaN: every NDF as it is */
+	/* A model, for eval and synth; its sigma, gamma and ior are those of `fit`. */
+	double kd[3], ks[3], k;
+	const char *from; /* a result table to take the model from */
+	int row;          /* its row, from 1; 0: the one of this material and NDF */
+	enum export_format format;
+	/* A distribution, for ndf and sample, in words: distribution.h. */
+	const char *sigma_words, *gamma_words, *params;
+	const char *theta, *phi; /* lists of angles: angles.h */
+	double theta_i;          /* degrees; NaN: not given */
+	enum sampling sampling;  /* and for render */
+	int count;
+	int n_phi_d;
+	double noise;
+	/* What bench runs; none: all. */
+	const struct algorithm *algorithm[ALGORITHM_COUNT];
+	int n_algorithms;
+	bool forms; /* bench: the forms of Lambda, not algorithms */
+	/* Pictures. */
+	const char *picture;     /* file to render into; NULL: none */
+	const char *environment; /* a built-in one's name or a file */
+	const char *light;       /* point lights, X,Y,Z[,E];...; NULL: none */
+	double exposure;         /* stops */
+	int size, pixel_samples;
+	bool difference;
+	bool pictures; /* compare: columns of pictures */
+	atomic_bool *cancel;
+	char **path; /* what is no option, in the order given */
+	int n_paths;
+	bool given[OPTIONS_MAX]; /* per row of the option table */
+};
+
+/* options_parse - reads a command's arguments into *options; argv is reordered and stays borrowed.
+ * Returns -1 to go on, or the exit code to end with: help was asked for (and printed), or something was wrong (and
+ * told). */
+MUST_CHECK int options_parse(struct options *options, enum command command, int argc, char **argv, atomic_bool *cancel);
+
+/* options_given - whether the option of this long name stands on the command line. */
+bool options_given(const struct options *options, const char *name);
+/* options_given_beside - the name of some given option that is not among `expected`, which ends with NULL; NULL: none.
+ */
+const char *options_given_beside(const struct options *options, const char *const *expected);
+
+/* options_text - newly allocated: every option that changes a result, in a fixed order, defaults included.
+ * NULL when out of memory. */
+char *options_text(const struct options *options);
+
+/* options_model - the model that the options of eval and synth describe, into *model.
+ * Returns -1, or EXIT_USAGE when they describe none (told on standard error). */
+MUST_CHECK int options_model(const struct options *options, struct cook_torrance *model);
+
+/* options_check_fit - whether the options of a fit go together. Returns -1, or EXIT_USAGE, told. */
+MUST_CHECK int options_check_fit(const struct options *options);
+
+/* options_show - what a command prints on standard output: JSON if asked for, readable text if asked for or on a
+ * terminal, else CSV. With -o only a terminal or --table gets anything. */
+enum show options_show(const struct options *options);
+
+/* options_end - the last of a command that makes one table: prints it as `all` says for JSON and readable text, or says
+ * what failed, and frees it. Returns the exit code. */
+int options_end(const struct options *options, enum status status, const struct error *error, struct csv_table *table,
+		report_readable *readable);
+
+/* options_usage - tells on standard error what is wrong with the command line. Returns EXIT_USAGE. */
+int options_usage(enum command command, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* struct command_text - a command's name and its help. */
+struct command_text {
+	const char *name, *arguments, *summary, *help;
+};
+/* options_command - of a command below COMMAND_COUNT. */
+const struct command_text *options_command(enum command command);
+
+/* options_default - what a command starts from. */
+struct options options_default(enum command command);
+
+/* options_overview - the help of the program as a whole, on standard output. */
+void options_overview(void);
+/* options_find_command - the command of this name, COMMAND_COUNT when there is none. */
+enum command options_find_command(const char *name);
+
+#endif

@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/cli/report.h"
+#include "data_readers/text_quote.h"
+#include "fit/results/result.h"
+#include "fit/search/search.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+void report_error(const char *format, ...)
+{
+	va_list list;
+	va_start(list, format);
+	fputs("stdfit: ", stderr);
+	vfprintf(stderr, format, list);
+	fputc('\n', stderr);
+	va_end(list);
+}
+
+/* JSON */
+
+static void json_string(FILE *file, const char *text)
+{
+	fputc('"', file);
+	while (*text) {
+		const size_t length = text_printable(text);
+		if (*text == '"' || *text == '\\')
+			fprintf(file, "\\%c", *text);
+		else if (length)
+			fwrite(text, 1, length, file);
+		else
+			fprintf(file, "\\u%04x", *text > 0 ? (unsigned)*text : 0xfffdu);
+		text += length ? length : 1;
+	}
+	fputc('"', file);
+}
+
+static void json_cell(FILE *file, const char *cell, bool number)
+{
+	char text[CSV_NUMBER_SIZE];
+	double x = NAN;
+	if (!*cell)
+		fputs("null", file);
+	else if (number && csv_parse_number(cell, &x) && isfinite(x))
+		fputs(csv_number(text, x), file);
+	else
+		json_string(file, cell);
+}
+
+void report_json(FILE *file, const struct csv_table *table)
+{
+	fputs("[", file);
+	for (size_t i = 0; i < table->n_rows; i++) {
+		fputs(i ? ",\n {" : "\n {", file);
+		for (int c = 0; c < table->n_columns; c++) {
+			fputs(c ? ", " : "", file);
+			json_string(file, table->column[c].name);
+			fputs(": ", file);
+			json_cell(file, table->row[i][c], table->column[c].number);
+		}
+		fputs("}", file);
+	}
+	fputs("\n]\n", file);
+}
+
+void report_csv(FILE *file, const struct csv_table *table)
+{
+	csv_write_header(file, table->column, table->n_columns);
+	for (size_t i = 0; i < table->n_rows; i++)
+		csv_write_row(file, table->row[i], table->n_columns);
+}
+
+/* Readable tables */
+
+/* Columns that text takes on a terminal, if each character takes one. */
+static int text_width(const char *text)
+{
+	int width = 0;
+	for (; *text; text++)
+		width += (*text & 0xc0) != 0x80;
+	return width;
+}
+
+static void print_padded(FILE *file, const char *text, int width, bool right)
+{
+	const int padding = width > text_width(text) ? width - text_width(text) : 0;
+	if (right)
+		fprintf(file, "%*s%s", padding, "", text);
+	else
+		fprintf(file, "%s%*s", text, padding, "");
+}
+
+enum { SHOWN_SIZE = 160 };
+
+/* A cell as people want it. */
+static const char *shown_cell(char text[SHOWN_SIZE], const char *cell, bool number)
+{
+	double x = NAN;
+	if (number && *cell && csv_parse_number(cell, &x) && strlen(cell) > 5)
+		snprintf(text, SHOWN_SIZE, fabs(x) < 1e15 && x == rint(x) ? "%.0f" : "%.5g", x);
+	else
+		text_quote(cell, text, SHOWN_SIZE);
+	return text;
+}
+
+void report_table(FILE *file, const struct csv_table *table)
+{
+	int *width = calloc((size_t)table->n_columns, sizeof(*width));
+	char text[SHOWN_SIZE];
+	for (int c = 0; c < table->n_columns && width; c++) {
+		width[c] = text_width(table->column[c].name);
+		for (size_t i = 0; i < table->n_rows; i++) {
+			const int needed = text_width(shown_cell(text, table->row[i][c], table->column[c].number));
+			width[c] = needed > width[c] ? needed : width[c];
+		}
+	}
+	for (size_t i = 0; i <= table->n_rows; i++) {
+		for (int c = 0; c < table->n_columns; c++) {
+			const struct csv_column *column = &table->column[c];
+			const char *cell = i ? shown_cell(text, table->row[i - 1][c], column->number) : column->name;
+			fputs(c ? "  " : "", file);
+			print_padded(file, cell, width ? width[c] : 0, column->number);
+		}
+		fputc('\n', file);
+	}
+	free(width);
+}
+
+void report_records(FILE *file, const struct csv_table *table)
+{
+	char text[SHOWN_SIZE];
+	for (size_t i = 0; i < table->n_rows; i++) {
+		if (i)
+			fputc('\n', file);
+		for (int c = 0; c < table->n_columns; c++)
+			fprintf(file, "%-20s %s\n", table->column[c].name,
+				shown_cell(text, table->row[i][c], table->column[c].number));
+	}
+}
+
+void report_output(const struct csv_table *table, enum show show, report_readable *readable)
+{
+	if (show == SHOW_JSON)
+		report_json(stdout, table);
+	else if (show == SHOW_READABLE)
+		readable(stdout, table);
+	else if (show == SHOW_CSV)
+		report_csv(stdout, table);
+}
+
+/* Three factors in one column; one number if they are equal, as those of a gray model are. */
+static const char *rgb_text(char text[SHOWN_SIZE], char *const *row, enum result_column first)
+{
+	const double x[3] = {result_number(row, first), result_number(row, first + 1), result_number(row, first + 2)};
+	if (isnan(x[0]))
+		return "-";
+	snprintf(text, SHOWN_SIZE, "%.4f %.4f %.4f", x[0], x[1], x[2]);
+	return text;
+}
+
+/* A status that is not the usual one. */
+static void print_remark(FILE *file, const char *status)
+{
+	char text[SHOWN_SIZE];
+	if (!strcmp(status, "limit")) {
+		fputs("  (stopped by a limit)", file);
+	} else if (strcmp(status, "converged") != 0) {
+		text_quote(status, text, sizeof text);
+		fprintf(file, "  (%s)", text);
+	}
+}
+
+static void print_fit(FILE *file, char *const *row)
+{
+	static const struct {
+		enum result_column column;
+		int width;
+		const char *format;
+	} number[] = {
+		{RESULT_ERROR, 9, "%.5f"},
+		{RESULT_SIGMA, 9, "%.5f"},
+		{RESULT_GAMMA, 8, "%.5g"},
+		{RESULT_IOR, 8, "%.5g"},
+	};
+	char text[SHOWN_SIZE];
+	text_quote(row[RESULT_MATERIAL], text, sizeof text);
+	print_padded(file, text, 22, false);
+	fprintf(file, "  %-8s", row[RESULT_NDF]);
+	if (result_failed(row)) {
+		text_quote(row[RESULT_STATUS], text, sizeof text);
+		fprintf(file, "  %s\n", text);
+		return;
+	}
+	for (size_t i = 0; i < sizeof number / sizeof *number; i++) {
+		const double x = result_number(row, number[i].column);
+		snprintf(text, sizeof text, number[i].format, x);
+		fprintf(file, " %*s", number[i].width, isnan(x) ? "-" : text);
+	}
+	fprintf(file, "  %-20s", rgb_text(text, row, RESULT_KD_R));
+	fprintf(file, "  %-20s", rgb_text(text, row, RESULT_KS_R));
+	fprintf(file, "%s%s", *row[RESULT_AT_BOUND] ? "  " : "", row[RESULT_AT_BOUND]);
+	print_remark(file, row[RESULT_STATUS]);
+	if (!strcmp(row[RESULT_ENERGY], "gain"))
+		fputs("  (sends back more light than it gets)", file);
+	fputc('\n', file);
+}
+
+void report_fits(FILE *file, const struct csv_table *results, bool heading)
+{
+	if (heading)
+		fprintf(file, "%-22s  %-8s %9s %9s %8s %8s  %-20s  %-20s  %s\n", "material", "ndf", "error", "sigma",
+			"gamma", "n", "kd", "ks", "at bound");
+	for (size_t i = 0; i < results->n_rows; i++)
+		print_fit(file, results->row[i]);
+}
+
+/* Progress */
+
+struct progress progress_start(size_t n, const char *unit, bool quiet)
+{
+	const double now = search_clock();
+	return (struct progress){.shown = !quiet && n > 1 && isatty(STDERR_FILENO), .n = n, .unit = unit, .start = now};
+}
+
+void progress_draw(struct progress *progress)
+{
+	const double now = search_clock();
+	if (!progress->shown || now - progress->drawn < 1.0 / 6)
+		return;
+	progress->drawn = now;
+	fprintf(stderr, "\r%zu of %zu %s", progress->done, progress->n, progress->unit);
+	if (progress->done) {
+		const double each = (now - progress->start) / (double)progress->done;
+		const long left = lrint(each * (double)(progress->n - progress->done));
+		fprintf(stderr, ", %ld:%02ld left", left / 60, left % 60);
+	}
+	fputs("\033[K", stderr);
+}
+
+void progress_erase(struct progress *progress)
+{
+	if (!progress->shown || progress->drawn <= 0)
+		return;
+	fputs("\r\033[K", stderr);
+	progress->drawn = 0;
+}

@@ -1,0 +1,440 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* stdfit bench - error against run time: the default search beside others, on one material; or, with --forms, the forms
+ * of Lambda beside each other. */
+#include "data_readers/atomic_file.h"
+#include "data_readers/merl.h"
+#include "fit/cli/options.h"
+#include "fit/cli/report.h"
+#include "fit/commands/commands.h"
+#include "fit/error/table.h"
+#include "fit/results/result.h"
+#include "fit/results/trace.h"
+#include "fit/search/search.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* When one looks who is where. */
+static const double look_s[] = {0.1, 0.3, 1, 3, 10};
+enum { LOOKS = sizeof look_s / sizeof *look_s };
+
+enum bench_column {
+	BENCH_MATERIAL,
+	BENCH_NDF,
+	BENCH_ALGORITHM,
+	BENCH_LOOK,
+	BENCH_ERROR = BENCH_LOOK + LOOKS,
+	BENCH_EVALUATIONS,
+	BENCH_SECONDS,
+	BENCH_COLUMNS
+};
+
+static const struct csv_column columns[BENCH_COLUMNS] = {
+	[BENCH_MATERIAL] = {"material", false},
+	[BENCH_NDF] = {"ndf", false},
+	[BENCH_ALGORITHM] = {"algorithm", false},
+	[BENCH_LOOK] = {"error_0.1s", true},
+	{"error_0.3s", true},
+	{"error_1s", true},
+	{"error_3s", true},
+	{"error_10s", true},
+	[BENCH_ERROR] = {"error", true},
+	[BENCH_EVALUATIONS] = {"evaluations", true},
+	[BENCH_SECONDS] = {"seconds", true},
+};
+
+enum forms_column {
+	FORMS_MATERIAL,
+	FORMS_NDF,
+	FORMS_LAMBDA,
+	FORMS_ERROR,
+	FORMS_ERROR_EXACT,
+	FORMS_SIGMA,
+	FORMS_GAMMA,
+	FORMS_IOR,
+	FORMS_EVALUATIONS,
+	FORMS_SECONDS,
+	FORMS_COLUMNS
+};
+
+static const struct csv_column forms_columns[FORMS_COLUMNS] = {
+	[FORMS_MATERIAL] = {"material", false},
+	[FORMS_NDF] = {"ndf", false},
+	[FORMS_LAMBDA] = {"lambda", false},
+	[FORMS_ERROR] = {"error", true},
+	[FORMS_ERROR_EXACT] = {"error_exact", true},
+	[FORMS_SIGMA] = {"sigma", true},
+	[FORMS_GAMMA] = {"gamma", true},
+	[FORMS_IOR] = {"ior", true},
+	[FORMS_EVALUATIONS] = {"evaluations", true},
+	[FORMS_SECONDS] = {"seconds", true},
+};
+
+/* The course of one algorithm, every search that it takes in one. */
+struct curve {
+	struct trace trace;
+	double begin_s;
+	const struct ndf_class *ndf[FIT_NDFS_MAX]; /* of the searches so far, */
+	long evaluations[FIT_NDFS_MAX];            /* and how far each has come */
+};
+
+struct bench {
+	const struct options *options;
+	const struct algorithm *algorithm[ALGORITHM_COUNT];
+	int n_algorithms;
+	char *material;
+	struct samples samples;
+	struct fit_context *context;
+	/* The full table, to judge the shapes of thinned ones by. */
+	struct geometry geometry;
+	struct table full;
+	struct csv_table output;
+	bool incomplete;          /* some form of Lambda could not be fitted */
+	struct atomic_file trace; /* if the options want one */
+	struct error error;
+};
+
+/* Shapes evaluated by all searches so far, of which this one has come to `point`. */
+static long add_evaluations(struct curve *curve, const struct fit_trace *point)
+{
+	long sum = 0;
+	int i = 0;
+	while (curve->ndf[i] && curve->ndf[i] != point->ndf)
+		i++;
+	curve->ndf[i] = point->ndf;
+	curve->evaluations[i] = point->evaluations;
+	for (i = 0; i < FIT_NDFS_MAX; i++)
+		sum += curve->evaluations[i];
+	return sum;
+}
+
+static void curve_note(void *data, const struct fit_trace *point)
+{
+	struct curve *curve = data;
+	struct fit_trace own = *point;
+	own.seconds = search_clock() - curve->begin_s;
+	own.evaluations = add_evaluations(curve, point);
+	trace_note(&curve->trace, &own);
+}
+
+/* Runs one algorithm; the last point of its curve is its result. */
+static enum status run_one(struct bench *b, const struct algorithm *algorithm, struct curve *curve)
+{
+	struct fit_options fit = b->options->fit;
+	struct fit_result result;
+	fit.algorithm = algorithm;
+	fit.trace = curve_note;
+	fit.trace_data = curve;
+	curve->begin_s = search_clock();
+	const enum status status = fit_run(b->context, &b->samples, &fit, &result, &b->error);
+	if (status)
+		return status;
+	const struct cook_torrance *m = &result.model;
+	const struct fit_trace end = {.ndf = fit.ndf[0],
+				      .stage = "end",
+				      .sigma = m->ndf.sigma_x,
+				      .gamma = m->ndf.gamma,
+				      .ior = m->n,
+				      .k = m->k,
+				      .error = result.error,
+				      .evaluations = result.evaluations};
+	curve_note(curve, &end);
+	return STATUS_OK;
+}
+
+static bool is_thinned(const struct fit_trace *point)
+{
+	return strcmp(point->stage, "full") != 0 && strcmp(point->stage, "end") != 0;
+}
+
+/* Judges the shapes that were found on thinned tables by the full one. */
+static enum status judge(struct bench *b, struct curve *curve)
+{
+	const struct ndf_class *ready = NULL;
+	struct objective objective;
+	struct linear linear;
+	enum status status = STATUS_OK;
+	for (int i = 0; i < FIT_NDFS_MAX && curve->ndf[i] && !status; i++) {
+		ready = curve->ndf[i];
+		status = objective_init(&objective, &b->full, &b->options->fit, ready, 1, MASKING_COARSE);
+		for (size_t n = 0; n < curve->trace.n && !status; n++) {
+			struct fit_trace *p = &curve->trace.point[n];
+			const struct shape shape = {p->sigma, p->gamma, p->ior, p->k};
+			if (*b->options->cancel)
+				status = STATUS_INTERRUPTED;
+			else if (p->ndf == ready && is_thinned(p))
+				p->error = objective_eval(&objective, &shape, 1e-6, false, &linear);
+		}
+		objective_free(&objective);
+	}
+	return status;
+}
+
+/* Keeps the points within the time that are better than all before them, and the end. All are then of the NDF that was
+ * asked for: GGX and Beckmann are members of STD. */
+static void keep_best(const struct bench *b, struct trace *trace)
+{
+	const double time_s = b->options->fit.time_s;
+	double best = INFINITY;
+	size_t kept = 0;
+	for (size_t i = 0; i < trace->n; i++) {
+		struct fit_trace p = trace->point[i];
+		const bool end = i + 1 == trace->n, better = p.seconds <= time_s && p.error < best;
+		if (!better && !end)
+			continue;
+		if (better)
+			best = p.error;
+		p.error = isinf(best) ? NAN : best;
+		p.seconds = fmin(p.seconds, time_s);
+		p.ndf = b->options->fit.ndf[0];
+		trace->point[kept++] = p;
+	}
+	trace->n = kept;
+}
+
+/* The error reached by then; NaN: none yet, or later than anybody was to go on. */
+static double error_after(const struct bench *b, const struct trace *trace, double seconds)
+{
+	double error = NAN;
+	for (size_t i = 0; i < trace->n && trace->point[i].seconds <= seconds; i++)
+		error = trace->point[i].error;
+	return seconds <= b->options->fit.time_s ? error : NAN;
+}
+
+static enum status add_row(struct bench *b, const struct algorithm *algorithm, const struct trace *trace)
+{
+	const struct fit_trace *end = &trace->point[trace->n - 1];
+	double number[BENCH_COLUMNS] = {[BENCH_ERROR] = end->error,
+					[BENCH_EVALUATIONS] = (double)end->evaluations,
+					[BENCH_SECONDS] = end->seconds};
+	char text[BENCH_COLUMNS][CSV_NUMBER_SIZE];
+	const char *cell[BENCH_COLUMNS] = {b->material, ndf_name(end->ndf), algorithm_name(algorithm)};
+	for (int i = 0; i < LOOKS; i++)
+		number[BENCH_LOOK + i] = error_after(b, trace, look_s[i]);
+	for (int c = BENCH_LOOK; c < BENCH_COLUMNS; c++)
+		cell[c] = csv_number(text[c], number[c]);
+	if (csv_table_add(&b->output, cell))
+		return error_set(&b->error, STATUS_NO_MEMORY, "out of memory");
+	return STATUS_OK;
+}
+
+/* Says on a terminal what is running. */
+static void tell(const struct bench *b, int i, int n, const char *name)
+{
+	if (!b->options->quiet && isatty(STDERR_FILENO))
+		fprintf(stderr, "\r%d of %d: %s\033[K", i + 1, n, name);
+}
+
+static void tell_no_more(const struct bench *b)
+{
+	if (!b->options->quiet && isatty(STDERR_FILENO))
+		fprintf(stderr, "\r\033[K");
+}
+
+static enum status run_algorithm(struct bench *b, const struct algorithm *algorithm)
+{
+	struct curve curve = {.begin_s = 0};
+	enum status status = run_one(b, algorithm, &curve);
+	if (!status && curve.trace.incomplete)
+		status = error_set(&b->error, STATUS_NO_MEMORY, "out of memory");
+	if (!status)
+		status = judge(b, &curve);
+	if (!status) {
+		keep_best(b, &curve.trace);
+		status = add_row(b, algorithm, &curve.trace);
+	}
+	if (!status && b->options->trace)
+		trace_write(b->trace.stream, b->material, algorithm_name(algorithm), &curve.trace);
+	trace_free(&curve.trace);
+	return status;
+}
+
+static enum status read_file(struct bench *b)
+{
+	const struct options *options = b->options;
+	enum status status = merl_read(options->path[0], options->fit.threads, &b->samples, &b->error);
+	if (status)
+		return status;
+	b->material = result_material(options->path[0]);
+	status = b->material ? fit_context_new(&b->context, b->samples.n_phi_d, &options->fit) : STATUS_NO_MEMORY;
+	return status ? error_set(&b->error, status, "%s", status_str(status)) : STATUS_OK;
+}
+
+static enum status prepare(struct bench *b)
+{
+	const struct options *options = b->options;
+	const struct fit_options *fit = &options->fit;
+	b->n_algorithms = options->n_algorithms;
+	for (int i = 0; i < options->n_algorithms; i++)
+		b->algorithm[i] = options->algorithm[i];
+	for (int i = 0; i < ALGORITHM_COUNT && !options->n_algorithms; i++)
+		b->algorithm[b->n_algorithms++] = algorithm_at(i);
+	enum status status = read_file(b);
+	if (status)
+		return status;
+	status = geometry_init(&b->geometry, b->samples.n_phi_d, fit);
+	if (!status)
+		status = table_init(&b->full, &b->geometry, &b->samples, fit->threads);
+	if (status == STATUS_NO_DATA)
+		return error_set(&b->error, status, "no entry to fit: expected some valid ones that are not all zero");
+	return status ? error_set(&b->error, status, "%s", status_str(status)) : STATUS_OK;
+}
+
+static enum status run_all(struct bench *b)
+{
+	const char *trace = b->options->trace;
+	enum status status = prepare(b);
+	if (!status && trace)
+		status = atomic_file_open(&b->trace, trace, &b->error);
+	if (status)
+		return status;
+	if (trace)
+		csv_write_header(b->trace.stream, trace_columns, TRACE_COLUMNS);
+	for (int i = 0; i < b->n_algorithms && !status; i++) {
+		tell(b, i, b->n_algorithms, algorithm_name(b->algorithm[i]));
+		status = run_algorithm(b, b->algorithm[i]);
+	}
+	tell_no_more(b);
+	if (!status && trace)
+		status = atomic_file_commit(&b->trace, &b->error);
+	return status;
+}
+
+/* E of the result's parameters with the exact Lambda. */
+static enum status eval_exact(struct bench *b, const struct fit_result *result, double *error)
+{
+	const struct fit_options *fit = &b->options->fit;
+	struct cook_torrance model = result->model;
+	struct fit_metrics metrics;
+	enum status status = ndf_set_lambda_form(&model.ndf, LAMBDA_EXACT);
+	if (status)
+		return error_set(&b->error, status, "%s", status_str(status));
+	status = fit_eval(&b->samples, &model, fit, &metrics, &b->error);
+	if (!status)
+		*error = metrics.error[fit->weight];
+	return status;
+}
+
+/* The row of a form; without a result its numbers stay empty. */
+static enum status add_form(struct bench *b, enum lambda_form form, const struct fit_result *result)
+{
+	const struct fit_options *fit = &b->options->fit;
+	double number[FORMS_COLUMNS];
+	char text[FORMS_COLUMNS][CSV_NUMBER_SIZE];
+	const char *cell[FORMS_COLUMNS] = {b->material, ndf_name(fit->ndf[0]), lambda_form_name(form)};
+	for (int c = FORMS_ERROR; c < FORMS_COLUMNS; c++)
+		number[c] = NAN;
+	if (result) {
+		const struct cook_torrance *m = &result->model;
+		const enum status status = eval_exact(b, result, &number[FORMS_ERROR_EXACT]);
+		if (status)
+			return status;
+		number[FORMS_ERROR] = result->error;
+		number[FORMS_SIGMA] = m->ndf.sigma_x;
+		number[FORMS_GAMMA] = m->ndf.gamma;
+		number[FORMS_IOR] = m->fresnel == FRESNEL_NONE ? NAN : m->n;
+		number[FORMS_EVALUATIONS] = (double)result->evaluations;
+		number[FORMS_SECONDS] = result->seconds;
+	}
+	for (int c = FORMS_ERROR; c < FORMS_COLUMNS; c++)
+		cell[c] = csv_number(text[c], number[c]);
+	if (csv_table_add(&b->output, cell))
+		return error_set(&b->error, STATUS_NO_MEMORY, "out of memory");
+	return STATUS_OK;
+}
+
+/* A form that is not defined at the gamma in question has an empty row: expected where that gamma was asked for, an
+ * error, which stops no other form, where the search came to it. */
+static enum status run_form(struct bench *b, enum lambda_form form)
+{
+	struct fit_options fit = b->options->fit;
+	struct fit_result result;
+	fit.lambda = form;
+	if (!isnan(fit.gamma) && !lambda_form_takes(form, fit.gamma))
+		return add_form(b, form, NULL);
+	enum status status = fit_run(b->context, &b->samples, &fit, &result, &b->error);
+	if (status == STATUS_DOMAIN) {
+		tell_no_more(b);
+		report_error("cannot fit %s with Lambda %s: %s", ndf_name(fit.ndf[0]), lambda_form_name(form),
+			     b->error.text);
+		b->incomplete = true;
+		return add_form(b, form, NULL);
+	}
+	if (status)
+		return status;
+	status = add_form(b, form, &result);
+	fit_result_free(&result);
+	return status;
+}
+
+static enum status run_forms(struct bench *b)
+{
+	enum status status = read_file(b);
+	for (int i = 0; i < LAMBDA_FORM_COUNT && !status; i++) {
+		tell(b, i, LAMBDA_FORM_COUNT, lambda_form_name((enum lambda_form)i));
+		status = run_form(b, (enum lambda_form)i);
+	}
+	tell_no_more(b);
+	return status;
+}
+
+static void release(struct bench *b)
+{
+	atomic_file_abort(&b->trace);
+	csv_table_free(&b->output);
+	table_free(&b->full);
+	geometry_free(&b->geometry);
+	fit_context_free(b->context);
+	samples_free(&b->samples);
+	free(b->material);
+}
+
+static bool has_forms(const struct ndf_class *class)
+{
+	struct ndf ndf;
+	return !ndf_is_tabulated(class) && !ndf_init(&ndf, class, 0.1, 0.1, 3) &&
+	       !ndf_set_lambda_form(&ndf, LAMBDA_RATIONAL);
+}
+
+static int check(const struct options *options)
+{
+	static const char *const excluded[] = {"algorithm", "time", "trace", "lambda", "no-specular"};
+	if (options->n_paths > 1)
+		return options_usage(COMMAND_BENCH, "expected one FILE, found %d", options->n_paths);
+	if (options->fit.n_ndf != 1)
+		return options_usage(COMMAND_BENCH, "--ndf takes one name here");
+	for (size_t i = 0; i < sizeof excluded / sizeof *excluded && options->forms; i++)
+		if (options_given(options, excluded[i]))
+			return options_usage(COMMAND_BENCH, "--forms and --%s exclude each other", excluded[i]);
+	if (options->forms && options->fit.gaf == GAF_V_GROOVE)
+		return options_usage(COMMAND_BENCH, "--forms means nothing with --gaf v-groove, which has no Lambda");
+	if (options->forms && !has_forms(options->fit.ndf[0]))
+		return options_usage(COMMAND_BENCH, "--forms means nothing for %s, which has the exact Lambda only",
+				     ndf_name(options->fit.ndf[0]));
+	return -1;
+}
+
+int cmd_bench(int argc, char **argv, atomic_bool *cancel)
+{
+	struct options options;
+	int code = options_parse(&options, COMMAND_BENCH, argc, argv, cancel);
+	if (code < 0)
+		code = check(&options);
+	if (code >= 0)
+		return code;
+	struct bench b = {.options = &options,
+			  .output = options.forms ? csv_table_make(forms_columns, FORMS_COLUMNS)
+						  : csv_table_make(columns, BENCH_COLUMNS)};
+	const enum status status = options.forms ? run_forms(&b) : run_all(&b);
+	/* An interrupted bench shows what it came to. */
+	if (!status || *cancel)
+		report_output(&b.output, options_show(&options), report_table);
+	else
+		report_error("%s", b.error.text);
+	release(&b);
+	if (*cancel)
+		return EXIT_INTERRUPTED;
+	return status || b.incomplete ? EXIT_FAILED : EXIT_DONE;
+}

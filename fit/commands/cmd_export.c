@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* stdfit export - a model in the form of another program. */
+#include "data_readers/atomic_file.h"
+#include "data_readers/merl.h"
+#include "fit/cli/report.h"
+#include "fit/commands/commands.h"
+#include "fit/sources/model_source.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int check(const struct options *options)
+{
+	if (options->n_paths > 1)
+		return options_usage(COMMAND_EXPORT, "expected one FILE, found %d", options->n_paths);
+	const int code = model_source_check(options, true);
+	if (code >= 0)
+		return code;
+	if (!options_given(options, "format"))
+		return options_usage(COMMAND_EXPORT, "expected --format");
+	if (model_source_kind(options) == SOURCE_FIT && !options->n_paths)
+		return options_usage(COMMAND_EXPORT, "expected FILE to fit, or --from, or --kd and --ks");
+	if (model_source_kind(options) != SOURCE_ROWS && options->fit.n_ndf != 1)
+		return options_usage(COMMAND_EXPORT, "--ndf takes one name here");
+	if (options->format == EXPORT_MERL && !options->output)
+		return options_usage(COMMAND_EXPORT, "--format merl is binary and needs -o FILE");
+	return -1;
+}
+
+/* Reads the measurement where the export has use for it: the FILE given, or the one that the row is of, if that is there
+ * and still the same. Else it does without; the export tells what its errors are against. *found is its path, or NULL.
+ * Fails only when out of memory: that says nothing about the file. */
+static enum status find_samples(const struct options *options, const struct source_model *model,
+				struct samples *samples, const char **found, struct error *error)
+{
+	const char *path = options->n_paths ? options->path[0] : model->path;
+	*found = samples->value[0] ? path : NULL;
+	if (*found || !path || !export_wants_samples(options->format, &model->model))
+		return STATUS_OK;
+	const enum status status = merl_read(path, options->fit.threads, samples, error);
+	if (status)
+		return status == STATUS_NO_MEMORY ? status : STATUS_OK;
+	if (options->n_paths || result_is_input(model->input, samples))
+		*found = path;
+	else
+		samples_free(samples);
+	return STATUS_OK;
+}
+
+static enum status write_merl(const struct export *export, const char *path, struct error *error)
+{
+	struct samples samples;
+	enum status status = export_table(export, &samples);
+	if (status)
+		return error_set(error, status, "%s", status_str(status));
+	status = merl_write(path, &samples, error);
+	samples_free(&samples);
+	return status;
+}
+
+static enum status write_stream(const struct export *export, FILE *stream, struct error *error)
+{
+	struct error why;
+	const enum status status = export_write(export, stream, &why);
+	if (status)
+		return error_set(error, status, "cannot export to %s: %.400s", export_format_name(export->format),
+				 why.text);
+	return STATUS_OK;
+}
+
+/* On standard output there is no half of a text that cannot be written whole: that shows in a first go, to nowhere.
+ * (A stream in memory would lose a part without a word when it cannot grow.) */
+static enum status write_standard(const struct export *export, struct error *error)
+{
+	FILE *nowhere = fopen("/dev/null", "w");
+	if (!nowhere)
+		return error_set(error, STATUS_IO, "cannot write '/dev/null': %s", strerror(errno));
+	const enum status status = write_stream(export, nowhere, error);
+	fclose(nowhere);
+	return status ? status : write_stream(export, stdout, error); /* main() tells when writing fails */
+}
+
+static enum status write_text(const struct export *export, const char *path, struct error *error)
+{
+	struct atomic_file file;
+	if (!path)
+		return write_standard(export, error);
+	enum status status = atomic_file_open(&file, path, error);
+	if (status)
+		return status;
+	status = write_stream(export, file.stream, error);
+	if (!status)
+		return atomic_file_commit(&file, error);
+	atomic_file_abort(&file);
+	return status;
+}
+
+/* Writes the one model; tells on standard error what a binary file has no room for. */
+static enum status write_model(const struct options *options, const struct source_model *model, struct samples *samples,
+			       struct error *error)
+{
+	const char *measured;
+	enum status status = find_samples(options, model, samples, &measured, error);
+	if (status)
+		return status;
+	const struct export_source source = {.model = &model->model,
+					     .fit = &model->fit,
+					     .error = model->error,
+					     .material = model->material,
+					     .path = measured ? measured : model->path,
+					     .samples = measured ? samples : NULL};
+	struct export export;
+	struct error why;
+	status = export_prepare(&export, options->format, &source, &why);
+	if (status)
+		return error_set(error, status, "cannot export to %s: %.400s", export_format_name(options->format),
+				 why.text);
+	if (*options->cancel)
+		return STATUS_INTERRUPTED;
+	if (options->format != EXPORT_MERL)
+		return write_text(&export, options->output, error);
+	status = write_merl(&export, options->output, error);
+	if (!status && !options->quiet)
+		fprintf(stderr, "%s\n", export.why);
+	return status;
+}
+
+static enum status run(const struct options *options, struct error *error)
+{
+	struct model_source source;
+	enum status status = model_source_read(options, options->n_paths ? options->path[0] : NULL, &source, error);
+	if (status)
+		return status;
+	if (source.n > 1)
+		status =
+			error_set(error, STATUS_FORMAT, "%zu rows are meant: choose one with --ndf or --row", source.n);
+	else
+		status = write_model(options, &source.model[0], &source.samples, error);
+	model_source_free(&source);
+	return status;
+}
+
+int cmd_export(int argc, char **argv, atomic_bool *cancel)
+{
+	struct options options;
+	struct error error = {""};
+	int code = options_parse(&options, COMMAND_EXPORT, argc, argv, cancel);
+	if (code < 0)
+		code = check(&options);
+	if (code >= 0)
+		return code;
+	const enum status status = run(&options, &error);
+	if (*cancel || status == STATUS_INTERRUPTED)
+		return EXIT_INTERRUPTED;
+	if (status)
+		report_error("%s", error.text);
+	return status ? EXIT_FAILED : EXIT_DONE;
+}

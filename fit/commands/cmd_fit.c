@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* stdfit fit - MERL files to a result table. */
+#include "data_readers/atomic_file.h"
+#include "data_readers/text_quote.h"
+#include "fit/cli/report.h"
+#include "fit/commands/commands.h"
+#include "fit/sources/batch.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+struct sink {
+	const struct options *options;
+	struct batch *batch;
+	enum show show;
+	bool stored; /* rows go to the store, too */
+	struct store store;
+	struct csv_table rows; /* all new rows, in order of the files */
+	size_t next;           /* the file whose rows are shown next */
+	bool headed;           /* standard output has its heading */
+	bool broken;           /* writing failed */
+	struct error error;    /* why */
+};
+
+static void show_rows(struct sink *sink, const struct csv_table *rows)
+{
+	if (sink->show == SHOW_READABLE) {
+		report_fits(stdout, rows, !sink->headed && rows->n_rows);
+		sink->headed |= rows->n_rows > 0;
+	} else if (sink->show == SHOW_CSV) {
+		for (size_t i = 0; i < rows->n_rows; i++)
+			csv_write_row(stdout, rows->row[i], rows->n_columns);
+	}
+}
+
+/* Shows and keeps the rows of all files that are done, up to the first that is not; `all`: past it, too. */
+static bool advance(struct sink *sink, bool all)
+{
+	errno = 0;
+	for (; sink->next < sink->batch->n; sink->next++) {
+		struct batch_file *file = &sink->batch->file[sink->next];
+		if (!file->done && !all)
+			break;
+		show_rows(sink, &file->rows);
+		if (csv_table_move(&sink->rows, &file->rows)) {
+			error_set(&sink->error, STATUS_NO_MEMORY, "out of memory");
+			return false;
+		}
+	}
+	if (!fflush(stdout) && !ferror(stdout))
+		return true;
+	error_set(&sink->error, STATUS_IO, "cannot write standard output: %s", strerror(errno));
+	return false;
+}
+
+static bool file_done(void *user, struct batch_file *file)
+{
+	struct sink *sink = user;
+	if (sink->stored) {
+		const struct result_source source = batch_source(sink->batch, file);
+		store_drop_stale(&sink->store, &source);
+		sink->broken = store_append(&sink->store, &file->rows, &sink->error) != STATUS_OK;
+	}
+	if (!sink->broken)
+		sink->broken = !advance(sink, false);
+	return !sink->broken;
+}
+
+/* What is written when all files are done, or what could be done of them. */
+static enum status finish(struct sink *sink, bool complete)
+{
+	if (!advance(sink, true))
+		return STATUS_IO;
+	if (sink->show == SHOW_JSON)
+		report_json(stdout, &sink->rows);
+	if (sink->options->json && sink->options->output && (sink->rows.n_rows || !sink->batch->n))
+		return store_write(sink->options->output, &sink->rows, report_json, &sink->error);
+	if (sink->stored && complete)
+		return store_rewrite(&sink->store, &sink->rows, &sink->error);
+	return STATUS_OK;
+}
+
+static int run(struct sink *sink, struct batch *batch)
+{
+	if (sink->options->json && sink->options->output && store_probe(sink->options->output, &sink->error)) {
+		report_error("%s", sink->error.text);
+		return EXIT_FAILED;
+	}
+	if (sink->stored && store_open(&sink->store, sink->options->output, sink->options->resume, &sink->error)) {
+		report_error("%s", sink->error.text);
+		return EXIT_FAILED;
+	}
+	if (sink->stored)
+		batch->store = &sink->store;
+	if (sink->show == SHOW_CSV)
+		csv_write_header(stdout, result_columns, RESULT_COLUMNS);
+	batch->done = file_done;
+	batch->user = sink;
+	int code = batch_run(batch);
+	/* The table of an empty share is one, too. */
+	if (!batch->n && sink->stored && store_begin(&sink->store, &sink->error)) {
+		sink->broken = true;
+		code = EXIT_FAILED;
+	}
+	if (!sink->broken && finish(sink, code != EXIT_INTERRUPTED)) {
+		sink->broken = true;
+		code = EXIT_FAILED;
+	}
+	if (sink->broken)
+		report_error("%s", sink->error.text);
+	return code;
+}
+
+/* The courses of all searches, in the order of the files. When nothing was searched an older file stays as it is. */
+static enum status write_trace(const struct batch *batch, struct atomic_file *file, struct error *error)
+{
+	const char *algorithm = algorithm_name(batch->options->fit.algorithm);
+	bool any = false, incomplete = false;
+	csv_write_header(file->stream, trace_columns, TRACE_COLUMNS);
+	for (size_t i = 0; i < batch->n; i++) {
+		char *material = result_material(batch->file[i].path);
+		if (material)
+			trace_write(file->stream, material, algorithm, &batch->file[i].trace);
+		incomplete |= !material || batch->file[i].trace.incomplete;
+		any |= batch->file[i].trace.n > 0;
+		free(material);
+	}
+	if (any && !incomplete)
+		return atomic_file_commit(file, error);
+	atomic_file_abort(file);
+	return incomplete ? error_set(error, STATUS_NO_MEMORY, "out of memory") : STATUS_OK;
+}
+
+static int run_traced(struct sink *sink, struct batch *batch)
+{
+	struct atomic_file file;
+	struct error error;
+	if (atomic_file_open(&file, sink->options->trace, &error)) {
+		report_error("%s", error.text);
+		return EXIT_FAILED;
+	}
+	const int code = run(sink, batch);
+	if (!write_trace(batch, &file, &error))
+		return code;
+	report_error("%s", error.text);
+	return code == EXIT_DONE ? EXIT_FAILED : code;
+}
+
+/* As files_collect(). Where something is not there (a disk that is not mounted), the list and so the shares would not be
+ * those that the others fit: then there are none. */
+static int collect(const struct options *options, struct files *files)
+{
+	const bool sharing = options->shard.n > 0;
+	int missing = 0;
+	*files = (struct files){0};
+	for (int i = 0; i < options->n_paths && sharing; i++)
+		if (access(options->path[i], F_OK)) {
+			char name[TEXT_QUOTE_SIZE];
+			text_quote(options->path[i], name, sizeof name);
+			report_error("cannot read '%s': %s", name, strerror(errno));
+			missing++;
+		}
+	if (missing)
+		return missing;
+	const int bad = files_collect(files, options->path, options->n_paths, options->recursive, options->cancel);
+	if (sharing && bad > 0)
+		files_free(files);
+	return bad;
+}
+
+/* An output takes the place of an older file, but not that of an input. Returns -1 or EXIT_USAGE. */
+static int check_outputs(const struct options *options, const struct files *files)
+{
+	const char *const output[] = {options->output, options->trace};
+	for (size_t i = 0; i < sizeof output / sizeof *output; i++)
+		if (output[i] && files_has(files, output[i]))
+			return options_usage(COMMAND_FIT, "--%s names a file that is to be read",
+					     i ? "trace" : "output");
+	return -1;
+}
+
+int cmd_fit(int argc, char **argv, atomic_bool *cancel)
+{
+	struct options options;
+	int code = options_parse(&options, COMMAND_FIT, argc, argv, cancel);
+	if (code >= 0)
+		return code;
+	struct files files;
+	const int bad = collect(&options, &files);
+	struct batch batch;
+	code = bad < 0 ? EXIT_FAILED : check_outputs(&options, &files);
+	if (options.shard.n && !bad)
+		files_keep_shard(&files, options.shard);
+	if (code >= 0 || batch_init(&batch, &options, &files)) {
+		files_free(&files);
+		return code >= 0 ? code : EXIT_FAILED;
+	}
+	struct sink sink = {.options = &options,
+			    .batch = &batch,
+			    .show = options_show(&options),
+			    .stored = options.output && !options.json,
+			    .rows = csv_table_make(result_columns, RESULT_COLUMNS)};
+	const bool nothing = !files.n && (bad || !options.shard.n);
+	code = *cancel         ? EXIT_INTERRUPTED
+	       : nothing       ? EXIT_FAILED
+	       : options.trace ? run_traced(&sink, &batch)
+			       : run(&sink, &batch);
+	csv_table_free(&sink.rows);
+	if (sink.stored)
+		store_close(&sink.store);
+	batch_free(&batch);
+	files_free(&files);
+	return code == EXIT_DONE && bad ? EXIT_FAILED : code;
+}

@@ -1,0 +1,323 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* stdfit report - fits as one HTML page that holds all it needs: written to DIR/index.html, pictures by way of a scratch
+ * directory beside it. */
+#include "data_readers/atomic_file.h"
+#include "fit/cli/lighting.h"
+#include "fit/cli/output_directory.h"
+#include "fit/commands/commands.h"
+#include "fit/page/page.h"
+#include "fit/page/report_spheres.h"
+#include "fit/plot/gnuplot.h"
+#include "fit/plot/plot_files.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* The pictures of a material, in the order of the page. */
+enum picture { PICTURE_SPHERES, PICTURE_SLICES, PICTURE_MAP, PICTURE_NDF, PICTURES };
+
+struct report {
+	const struct options *options;
+	struct progress progress;
+	struct scratch scratch; /* where pictures are made */
+	int code;
+	struct environment environment;
+	bool no_gnuplot, no_png; /* told already; why, below */
+	struct error missing, missing_png;
+};
+
+static void tell(struct report *r, const struct error *error)
+{
+	progress_erase(&r->progress);
+	report_error("%s", error->text);
+	r->code = EXIT_FAILED;
+}
+
+/* Draws what plot_*() has written to the scratch directory. Without gnuplot the page does without, which is told once. */
+static bool draw(struct report *r, const char *const *name, int n, struct error *error)
+{
+	if (r->no_gnuplot) {
+		*error = r->missing;
+		return false;
+	}
+	const enum status status = gnuplot_draw(r->scratch.path, name, n, r->options->cancel, error);
+	if (status == STATUS_UNSUPPORTED) {
+		progress_erase(&r->progress);
+		report_error("%s: the page has no plots", error->text);
+		r->no_gnuplot = true;
+		r->missing = *error;
+	} else if (status && status != STATUS_INTERRUPTED) {
+		tell(r, error);
+	}
+	return status == STATUS_OK;
+}
+
+/* NAME in the scratch directory; NULL, which the page takes for no picture, when out of memory, which `why` tells. */
+static char *scratch_path(const struct report *r, const char *name, struct error *why)
+{
+	char *path;
+	if (asprintf(&path, "%s/%s", r->scratch.path, name) >= 0)
+		return path;
+	error_set(why, STATUS_NO_MEMORY, "out of memory");
+	return NULL;
+}
+
+static enum status begin(struct report *r, struct page *page, FILE *file, const struct materials *materials,
+			 struct error *error)
+{
+	static const char *const name[] = {"errors"};
+	struct page_picture errors = {
+		.type = "image/svg+xml",
+		.plot = true,
+		.alt = "Error of each fit, one curve an NDF, materials sorted; the numbers are in the table below.",
+		.caption = "Errors of all materials, sorted.",
+	};
+	struct error why;
+	const enum status status = plot_errors(r->scratch.path, materials, &why);
+	const bool wanted = status != STATUS_NO_DATA && materials->n > 1;
+	if (status && status != STATUS_NO_DATA)
+		tell(r, &why);
+	if (!status && wanted && draw(r, name, 1, &why)) {
+		errors.path = scratch_path(r, "errors.svg", &why);
+		if (!errors.path)
+			tell(r, &why);
+	}
+	const char *missing = wanted && !errors.path ? why.text : NULL;
+	const enum status begun = page_begin(page, file, materials, &errors, missing, error);
+	free(errors.path);
+	return begun;
+}
+
+/* The light, and how many samples of it: what the spheres depend on beside the fits. */
+static void put_light(FILE *file, const struct options *options)
+{
+	const bool map = options_given(options, "environment") || !options->light;
+	fprintf(file, "%s%s%s%s", map ? options->environment : "", map && options->light ? ", " : "",
+		options->light ? "lights " : "", options->light ? options->light : "");
+	if (options->exposure != 0)
+		fprintf(file, ", exposure %g", options->exposure);
+	fprintf(file, "; %d samples a pixel", options->pixel_samples);
+}
+
+/* What the spheres show, and how far they are from the measured one, in words; newly allocated, NULL when out of
+ * memory. */
+static char *spheres_caption(const struct options *options, const struct material_data *data,
+			     const struct picture_error *difference)
+{
+	char *text = NULL;
+	size_t size;
+	FILE *file = open_memstream(&text, &size);
+	if (!file)
+		return NULL;
+	fputs("Spheres in the same light (", file);
+	put_light(file, options);
+	fputs("), and in false colours how far each fit's is from the measured one. Mean CIEDE2000 and SSIM:", file);
+	for (int f = 0; f < data->n; f++)
+		fprintf(file, "%s %s %.2f, %.4f", f ? ";" : "", data->fit[f].ndf, difference[f].delta_e,
+			difference[f].ssim);
+	fputs(".", file);
+	const bool failed = ferror(file);
+	if (!fclose(file) && !failed)
+		return text;
+	free(text);
+	return NULL;
+}
+
+/* Without libpng the page does without spheres, which is told once. */
+static bool draw_spheres(struct report *r, const struct material_data *data, struct page_picture *picture,
+			 char **caption, struct error *why)
+{
+	struct picture_error difference[FIT_NDFS_MAX] = {{.rmse = 0}};
+	char *path = r->no_png ? NULL : scratch_path(r, "spheres.png", why);
+	enum status status = r->no_png ? STATUS_UNSUPPORTED : STATUS_NO_MEMORY;
+	if (r->no_png)
+		*why = r->missing_png;
+	else if (path)
+		status = report_spheres(path, data, &r->environment, r->options, difference, why);
+	if (!status) {
+		*caption = spheres_caption(r->options, data, difference);
+		if (!*caption)
+			status = error_set(why, STATUS_NO_MEMORY, "out of memory");
+	}
+	if (!status) {
+		picture->path = path;
+		picture->caption = *caption;
+		return true;
+	}
+	free(path);
+	if (status == STATUS_UNSUPPORTED && !r->no_png) {
+		progress_erase(&r->progress);
+		report_error("%s: the page has no spheres", why->text);
+		r->no_png = true;
+		r->missing_png = *why;
+	} else if (status != STATUS_UNSUPPORTED && status != STATUS_INTERRUPTED) {
+		tell(r, why);
+	}
+	return false;
+}
+
+static bool draw_plots(struct report *r, const struct material_data *data, struct page_picture picture[PICTURES],
+		       struct error *why)
+{
+	static const char *const name[PICTURES] = {
+		[PICTURE_SLICES] = "slices.svg", [PICTURE_MAP] = "map.png", [PICTURE_NDF] = "ndf.svg"};
+	if (plot_material(r->scratch.path, data, why)) {
+		tell(r, why);
+		return false;
+	}
+	if (!draw(r, plot_material_names, PLOT_MATERIAL_PICTURES, why))
+		return false;
+	bool all = true;
+	for (int p = PICTURE_SLICES; p < PICTURES; p++) {
+		picture[p].path = scratch_path(r, name[p], why);
+		all &= picture[p].path != NULL;
+	}
+	if (!all)
+		tell(r, why);
+	return all;
+}
+
+/* Draws the pictures of a material; the paths of those that are there go to picture[]. Returns whether all are. */
+static bool draw_material(struct report *r, const struct materials *materials, size_t m,
+			  struct page_picture picture[PICTURES], char **caption, struct error *why)
+{
+	struct material_data data;
+	const enum status status = material_read(&materials->material[m], r->options->fit.threads, &data, why);
+	if (status == STATUS_NO_DATA && materials->told)
+		r->code = EXIT_FAILED;
+	else if (status)
+		tell(r, why);
+	if (status)
+		return false;
+	struct error no_spheres;
+	const bool spheres = draw_spheres(r, &data, &picture[PICTURE_SPHERES], caption, &no_spheres);
+	const bool plots = draw_plots(r, &data, picture, why);
+	if (plots && !spheres)
+		*why = no_spheres;
+	material_data_free(&data);
+	return spheres && plots;
+}
+
+static enum status add_material(struct report *r, const struct page *page, size_t m, struct error *error)
+{
+	struct page_picture picture[PICTURES] = {
+		[PICTURE_SPHERES] = {.type = "image/png",
+				     .alt = "spheres in the same light, as measured and as each fit has it, and their "
+					    "differences in false colours."},
+		[PICTURE_SLICES] =
+			{.type = "image/svg+xml",
+			 .plot = true,
+			 .alt = "measured and fitted BRDF over theta_h, on a logarithmic scale, for theta_d of 0, 15, "
+				"30, 45, 60 and 75 degrees at phi_d = 90 degrees.",
+			 .caption = "Slices, measured and fitted: \xcf\x86_d = 90\xc2\xb0, six \xce\xb8_d, mean of the "
+				    "channels."},
+		[PICTURE_MAP] =
+			{.type = "image/png",
+			 .plot = true,
+			 .alt = "heat maps of the error over theta_h and theta_d, one a fit; the errors in all are in "
+				"the table of parameters.",
+			 .caption =
+				 "Where each fit errs: E of each row (\xce\xb8_h, \xce\xb8_d) of the table by itself; "
+				 "gray: nothing measured."},
+		[PICTURE_NDF] =
+			{.type = "image/svg+xml",
+			 .plot = true,
+			 .alt = "D of each fit over theta_h against the D that the fit reads off the data, and G1 over "
+				"theta.",
+			 .caption =
+				 "D of each fit against the D that it reads off the data at small \xce\xb8_d, and G\xe2"
+				 "\x82\x81."},
+	};
+	struct error why;
+	char *caption = NULL;
+	const bool drawn = draw_material(r, page->materials, m, picture, &caption, &why);
+	enum status status = STATUS_INTERRUPTED;
+	if (!*r->options->cancel)
+		status = page_material(page, m, picture, PICTURES, drawn ? NULL : why.text, error);
+	for (int p = 0; p < PICTURES; p++)
+		free(picture[p].path);
+	free(caption);
+	return status;
+}
+
+static enum status write_page(struct report *r, FILE *file, const struct materials *materials, struct error *error)
+{
+	struct page page;
+	enum status status = begin(r, &page, file, materials, error);
+	r->progress = progress_start(materials->n, "materials", r->options->quiet);
+	for (size_t m = 0; m < materials->n && !status; m++) {
+		progress_draw(&r->progress);
+		status = add_material(r, &page, m, error);
+		r->progress.done = m + 1;
+	}
+	progress_erase(&r->progress);
+	if (!status)
+		page_end(&page);
+	page_free(&page);
+	return *r->options->cancel ? STATUS_INTERRUPTED : status;
+}
+
+static enum status make_page(struct report *r, const struct materials *materials, struct error *error)
+{
+	struct atomic_file file;
+	char *path;
+	if (asprintf(&path, "%s/index.html", r->options->output) < 0)
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	enum status status = atomic_file_open(&file, path, error);
+	free(path);
+	if (status)
+		return status;
+	status = scratch_make(r->options->output, &r->scratch, error);
+	if (!status)
+		status = write_page(r, file.stream, materials, error);
+	scratch_remove(&r->scratch);
+	if (!status)
+		return atomic_file_commit(&file, error);
+	atomic_file_abort(&file);
+	return status;
+}
+
+int cmd_report(int argc, char **argv, atomic_bool *cancel)
+{
+	struct options options;
+	struct error error;
+	int code = options_parse(&options, COMMAND_REPORT, argc, argv, cancel);
+	if (code < 0)
+		code = options_check_fit(&options);
+	if (code < 0 && !options.output)
+		code = options_usage(COMMAND_REPORT, "expected -o DIR, a directory for the page");
+	if (code >= 0)
+		return code;
+	enum status status = output_directory_make(options.output, NULL, NULL, &error);
+	if (!status)
+		status = output_directory_spares(options.output, "index.html", options.path, options.n_paths, &error);
+	if (status == STATUS_DOMAIN)
+		return options_usage(COMMAND_REPORT, "%s", error.text);
+	if (!status)
+		status = output_directory_takes(options.output, "index.html", &error);
+	if (status) {
+		report_error("%s", error.text);
+		return EXIT_FAILED;
+	}
+	struct report report = {.options = &options};
+	struct materials materials;
+	status = lighting_make(&options, &report.environment, &error);
+	if (status == STATUS_DOMAIN)
+		return options_usage(COMMAND_REPORT, "%s", error.text);
+	if (status) {
+		report_error("%s", error.text);
+		return EXIT_FAILED;
+	}
+	code = materials_collect(&materials, &options);
+	if (materials.n && code != EXIT_INTERRUPTED)
+		status = make_page(&report, &materials, &error);
+	if (status && status != STATUS_INTERRUPTED) {
+		report_error("%s", error.text);
+		report.code = EXIT_FAILED;
+	}
+	materials_free(&materials);
+	environment_free(&report.environment);
+	if (*cancel)
+		return EXIT_INTERRUPTED;
+	return code != EXIT_DONE ? code : report.code;
+}

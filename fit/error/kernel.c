@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/error/kernel.h"
+#include <math.h>
+
+/* Compiled twice, see the Makefile: KERNEL_NAME is kernel_plain or kernel_avx2. */
+#ifndef KERNEL_NAME
+#define KERNEL_NAME kernel_plain
+#endif
+#define TEXT(x) #x
+#define NAME_TEXT(x) TEXT(x)
+
+/* Floats are summed over runs this long only, then in double: rounding errors stay near 1e-8 of the sum. */
+enum { RUN = 256 };
+
+static inline float g1_at(const struct kernel_g1 *g1, const float *restrict value, int32_t q)
+{
+	const int32_t at = q - g1->q_min;
+	const int32_t index = at >> g1->shift;
+	const float fraction = (float)(at & ((1 << g1->shift) - 1)) * (1.0F / (float)(1 << g1->shift));
+
+	return value[index] + fraction * (value[index + 1] - value[index]);
+}
+
+static void lobe_separable(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_slots *slots,
+			   float *restrict s)
+{
+	const struct kernel_g1 table = *g1;
+	const float *restrict value = g1->value, *restrict geo = slots->geo;
+	const int32_t *restrict q_i = slots->q_i, *restrict q_o = slots->q_o;
+	const uint16_t *restrict at = slots->row;
+
+#pragma omp simd
+	for (int n = 0; n < KERNEL_BLOCK; n++)
+		s[n] = geo[n] * row[at[n]] * g1_at(&table, value, q_i[n]) * g1_at(&table, value, q_o[n]);
+}
+
+static void lobe_correlated(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_slots *slots,
+			    float *restrict s)
+{
+	const struct kernel_g1 table = *g1;
+	const float *restrict value = g1->value, *restrict geo = slots->geo;
+	const int32_t *restrict q_i = slots->q_i, *restrict q_o = slots->q_o;
+	const uint16_t *restrict at = slots->row;
+
+#pragma omp simd
+	for (int n = 0; n < KERNEL_BLOCK; n++) {
+		const float i = g1_at(&table, value, q_i[n]), o = g1_at(&table, value, q_o[n]);
+		/* 1/(1/i + 1/o - 1), without the division by a G1 that may be 0. */
+		const float below = i + o - i * o;
+
+		s[n] = geo[n] * row[at[n]] * (below > 0 ? i * o / below : 0);
+	}
+}
+
+static void lobe_static(const float *restrict row, const struct kernel_slots *slots, float *restrict s)
+{
+	const float *restrict geo = slots->geo;
+	const uint16_t *restrict at = slots->row;
+
+#pragma omp simd
+	for (int n = 0; n < KERNEL_BLOCK; n++)
+		s[n] = geo[n] * row[at[n]];
+}
+
+static void lobe(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *row, const struct kernel_slots *slots,
+		 float *s)
+{
+	switch (gaf) {
+	case KERNEL_SEPARABLE:
+		lobe_separable(g1, row, slots, s);
+		break;
+	case KERNEL_CORRELATED:
+		lobe_correlated(g1, row, slots, s);
+		break;
+	case KERNEL_STATIC:
+		lobe_static(row, slots, s);
+		break;
+	}
+}
+
+/* Eight lanes, whatever the machine has: a compiler without registers this wide makes two operations of each. Sums
+ * are kept lane by lane, so both kernels add in the same order. */
+typedef float lanes __attribute__((vector_size(32), may_alias));
+typedef int32_t lanes_int __attribute__((vector_size(32), may_alias));
+typedef double lanes_double __attribute__((vector_size(64)));
+enum { LANES = 8 };
+
+struct lane_look {
+	lanes d, ks, tau, floor;
+};
+
+struct accumulator {
+	lanes error, slope_w, slope_s, dd, ds, ss;
+};
+
+/* 1/x to about 1 %, x > 0: the curvature is an estimate, and a division takes longer than all the rest. */
+__attribute__((always_inline)) static inline lanes rough_inverse(lanes x)
+{
+	const lanes y = (lanes)(0x7ef311c7 - (lanes_int)x);
+
+	return y * (2 - x * y);
+}
+
+/* Adds the members m[0], m[KERNEL_BLOCK], ... of eight slots. Constant arguments are folded in. */
+__attribute__((always_inline)) static inline void add_lanes(int members, bool curved, const float *m, const float *w_at,
+							    const float *s_at, const struct lane_look *look,
+							    struct accumulator *sum)
+{
+	const lanes w = *(const lanes *)w_at, s = *(const lanes *)s_at, f = look->d * w + look->ks * s;
+	const lanes wide = f + look->floor * w, window = look->tau * wide;
+	/* Half of sum sign(r): half of the members, less 1 for each below the model. */
+	lanes_int whole = (lanes_int){0} + members / 2, near = {0};
+
+	for (int a = 0; a < members; a++) {
+		const lanes r = *(const lanes *)(m + a * KERNEL_BLOCK) - f;
+		const lanes size = (lanes)((lanes_int)r & 0x7fffffff);
+
+		sum->error += size;
+		whole += r < 0;
+		if (curved)
+			near += size < window;
+	}
+	lanes half = __builtin_convertvector(whole, lanes);
+
+	if (members % 2)
+		half += 0.5F;
+	sum->slope_w += half * w;
+	sum->slope_s += half * s;
+	if (curved) {
+		const lanes density = -__builtin_convertvector(near, lanes) * rough_inverse(wide);
+		const lanes dw = density * w, ds = density * s;
+
+		sum->dd += dw * w;
+		sum->ds += dw * s;
+		sum->ss += ds * s;
+	}
+}
+
+/* The sums of a block, a lane each, in double. */
+struct lane_sums {
+	lanes_double error, slope_w, slope_s, dd, ds, ss;
+};
+
+__attribute__((always_inline)) static inline lanes_double widen(lanes a, lanes b)
+{
+	return __builtin_convertvector(a + b, lanes_double);
+}
+
+static inline double total(const lanes_double *a)
+{
+	double sum = 0;
+
+	for (int n = 0; n < LANES; n++)
+		sum += (*a)[n];
+	return sum;
+}
+
+/* A run, with two accumulators in turn, so that one addition need not wait for the other. */
+__attribute__((always_inline)) static inline void run(int members, bool curved, const float *m, const float *w,
+						      const float *s, const struct lane_look *look,
+						      struct lane_sums *sums)
+{
+	struct accumulator a = {0}, b = {0};
+
+	for (int n = 0; n < RUN; n += 2 * LANES) {
+		/* What comes next in memory, the next channel or block: the processor's own prefetching ends at each page. */
+		for (int member = members; member < 2 * members; member++)
+			__builtin_prefetch(m + n + member * KERNEL_BLOCK);
+		add_lanes(members, curved, m + n, w + n, s + n, look, &a);
+		add_lanes(members, curved, m + n + LANES, w + n + LANES, s + n + LANES, look, &b);
+	}
+	sums->error += widen(a.error, b.error);
+	sums->slope_w += widen(a.slope_w, b.slope_w);
+	sums->slope_s += widen(a.slope_s, b.slope_s);
+	if (curved) {
+		sums->dd += widen(a.dd, b.dd);
+		sums->ds += widen(a.ds, b.ds);
+		sums->ss += widen(a.ss, b.ss);
+	}
+}
+
+__attribute__((always_inline)) static inline void block(int members, bool curved, const float *m, const float *w,
+							const float *s, const struct kernel_look *look,
+							struct kernel_sums *sums)
+{
+	const lanes zero = {0};
+	const struct lane_look all = {zero + (float)look->d, zero + (float)look->ks, zero + (float)look->tau,
+				      zero + (float)look->floor};
+	struct lane_sums lane = {0};
+
+	for (int at = 0; at < KERNEL_BLOCK; at += RUN)
+		run(members, curved, m + at, w + at, s + at, &all, &lane);
+	*sums = (struct kernel_sums){
+		.error = total(&lane.error),
+		.slope = {-2 * total(&lane.slope_w), -2 * total(&lane.slope_s)},
+	};
+	if (curved) {
+		sums->curvature[0] = total(&lane.dd) / look->tau;
+		sums->curvature[1] = total(&lane.ds) / look->tau;
+		sums->curvature[2] = total(&lane.ss) / look->tau;
+	}
+}
+
+__attribute__((always_inline)) static inline void either_block(int members, const float *m, const float *w,
+							       const float *s, const struct kernel_look *look,
+							       struct kernel_sums *sums)
+{
+	if (look->tau > 0)
+		block(members, true, m, w, s, look, sums);
+	else
+		block(members, false, m, w, s, look, sums);
+}
+
+/* Each count of members gets a loop of its own. */
+static void pass(int members, const float *m, const float *w, const float *s, const struct kernel_look *look,
+		 struct kernel_sums *sums)
+{
+	switch (members) {
+	case 1:
+		either_block(1, m, w, s, look, sums);
+		break;
+	case 2:
+		either_block(2, m, w, s, look, sums);
+		break;
+	case 3:
+		either_block(3, m, w, s, look, sums);
+		break;
+	case 6:
+		either_block(6, m, w, s, look, sums);
+		break;
+	}
+}
+
+const struct kernel KERNEL_NAME = {NAME_TEXT(KERNEL_NAME), lobe, pass};

@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/error/metrics.h"
+#include "fit/error/masking.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Sums over the entries and channels of one theta_h. */
+struct sums {
+	double difference[WEIGHT_COUNT], measured[WEIGHT_COUNT];
+	double square, cube_root, log;
+	size_t n;
+};
+
+/* The entries of one row (theta_h, theta_d): measured m, model f and c = cos_i cos_o. */
+enum { ROW_MOST = 4 * 91 };
+struct row {
+	int n;
+	double c[ROW_MOST], lobe[ROW_MOST], m[SAMPLES_CHANNELS][ROW_MOST];
+};
+
+/* Cube root to float precision, in a form that vectorises: a first guess from the exponent, two steps of Halley. */
+static inline float cube_root(float x)
+{
+	union {
+		float f;
+		int32_t i;
+	} y = {x};
+
+	y.i = 0x2a5119f2 + y.i / 3;
+	for (int step = 0; step < 2; step++) {
+		const float cube = y.f * y.f * y.f;
+
+		/* Over 4, so that no x is too large. */
+		y.f *= (0.25F * cube + 0.5F * x) / (0.5F * cube + 0.25F * x);
+	}
+	return x > 1e-36F ? y.f : 0;
+}
+
+static void sum_row(const struct row *row, const struct cook_torrance *model, double cell, struct sums *sums)
+{
+	const double offset = 1e-3; /* of the logarithmic metric */
+
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		const double kd = model->kd[c] / M_PI, ks = model->ks[c];
+		const double *m = row->m[c];
+		double d_none = 0, d_cosine = 0, m_none = 0, m_cosine = 0, square = 0, root = 0;
+
+#pragma omp simd reduction(+ : d_none, d_cosine, m_none, m_cosine, square, root)
+		for (int n = 0; n < row->n; n++) {
+			const double f = kd + ks * row->lobe[n], r = fabs(m[n] - f), w = row->c[n];
+			const float step = cube_root((float)(w * m[n])) - cube_root((float)(w * f));
+
+			d_none += r;
+			d_cosine += w * r;
+			m_none += m[n];
+			m_cosine += w * m[n];
+			square += w * w * r * r;
+			root += (double)(step * step);
+		}
+		/* A sum of |ln| is the ln of a product: six ratios of at most 1e42 each stay far from overflow. */
+		for (int n = 0; n < row->n; n += 6) {
+			double product = 1;
+
+			for (int a = n; a < n + 6 && a < row->n; a++) {
+				const double f = kd + ks * row->lobe[a];
+				const double x = row->c[a] * m[a] + offset, y = row->c[a] * f + offset;
+
+				product *= x > y ? x / y : y / x;
+			}
+			sums->log += log(product);
+		}
+		sums->difference[WEIGHT_NONE] += d_none;
+		sums->difference[WEIGHT_COSINE] += d_cosine;
+		sums->difference[WEIGHT_SOLID_ANGLE] += cell * d_cosine;
+		sums->measured[WEIGHT_NONE] += m_none;
+		sums->measured[WEIGHT_COSINE] += m_cosine;
+		sums->measured[WEIGHT_SOLID_ANGLE] += cell * m_cosine;
+		sums->square += square;
+		sums->cube_root += root;
+	}
+	sums->n += (size_t)row->n * SAMPLES_CHANNELS;
+}
+
+/* Adds the valid entries of slot n to the row. */
+static void add_entries(struct row *row, const struct geometry *g, const struct samples *samples, int n, double c,
+			double lobe)
+{
+	int k[4];
+	const int count = geometry_members(g, n, k);
+
+	for (int a = 0; a < count; a++) {
+		const size_t at = (size_t)g->row[n] * (size_t)g->n_phi_d + (size_t)k[a];
+
+		if (isnan(samples->value[0][at]))
+			continue;
+		row->c[row->n] = c;
+		row->lobe[row->n] = lobe;
+		for (int ch = 0; ch < SAMPLES_CHANNELS; ch++)
+			row->m[ch][row->n] = (double)samples->value[ch][at];
+		row->n++;
+	}
+}
+
+/* The parts of a model that a table of (theta_h, theta_d, phi_d) asks for again and again. */
+struct parts {
+	struct masking masking;
+	double D[SAMPLES_THETA_H], F[SAMPLES_THETA_D];
+};
+
+static enum status parts_init(struct parts *parts, const struct geometry *g, const struct cook_torrance *model)
+{
+	for (int i = 0; i < SAMPLES_THETA_H; i++) {
+		parts->D[i] =
+			ndf_D(&model->ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
+		parts->F[i] = fresnel_F(model->fresnel, g->entries.theta[i].cos_d, model->n, model->k);
+	}
+	if (masking_init(&parts->masking, g->q_min, MASKING_FINE) != STATUS_OK)
+		return STATUS_NO_MEMORY;
+	if (g->gaf != GAF_V_GROOVE)
+		masking_fill(&parts->masking, &model->ndf);
+	return STATUS_OK;
+}
+
+static double cos_product(const struct geometry *g, int n)
+{
+	const struct halfdiff_trig *h = &g->entries.theta[g->row[n] / SAMPLES_THETA_D],
+				   *d = &g->entries.theta[g->row[n] % SAMPLES_THETA_D];
+	const double a = h->cos_h * d->cos_d, b = h->sin_h * d->sin_d * g->entries.phi[g->k[n]].cos_phi;
+
+	return (a - b) * (a + b);
+}
+
+/* c: cos_i cos_o of slot n. */
+static double lobe_at(const struct parts *p, const struct geometry *g, int n, double c)
+{
+	const double spread = p->D[g->row[n] / SAMPLES_THETA_D] * p->F[g->row[n] % SAMPLES_THETA_D];
+
+	/* geo and w both carry the weight of the fit; geo alone has the v-groove's G. */
+	if (g->gaf == GAF_V_GROOVE)
+		return spread * (double)g->geo[n] / (double)g->w[n];
+	const double i = masking_at(&p->masking, g->q_i[n]), o = masking_at(&p->masking, g->q_o[n]);
+
+	if (g->gaf == GAF_UNCORRELATED)
+		return spread * i * o / (4 * c);
+	return i > 0 && o > 0 ? spread / (4 * c * (1 / i + 1 / o - 1)) : 0;
+}
+
+/* One theta_h, all its rows into sums[0] or each into sums[its theta_d]. */
+static void sum_theta_h(const struct geometry *g, const struct samples *samples, const struct cook_torrance *model,
+			const struct parts *parts, int i, bool by_row, struct sums *sums)
+{
+	struct row row = {.n = 0};
+
+	for (int n = g->first[i]; n < g->first[i + 1]; n++) {
+		const double c = cos_product(g, n);
+
+		add_entries(&row, g, samples, n, c, lobe_at(parts, g, n, c));
+		if (n + 1 == g->first[i + 1] || g->row[n + 1] != g->row[n]) {
+			const int j = g->row[n] % SAMPLES_THETA_D;
+
+			sum_row(&row, model, cell_measure(i, j), &sums[by_row ? j : 0]);
+			row.n = 0;
+		}
+	}
+}
+
+enum status metrics_compute(const struct geometry *g, const struct samples *samples, const struct cook_torrance *model,
+			    int threads, struct fit_metrics *metrics)
+{
+	struct sums sums[SAMPLES_THETA_H] = {{.n = 0}}, all = {.n = 0};
+	struct parts parts;
+
+	if (parts_init(&parts, g, model) != STATUS_OK)
+		return STATUS_NO_MEMORY;
+#pragma omp parallel for num_threads(threads) schedule(dynamic) if (threads > 1)
+	for (int i = 0; i < SAMPLES_THETA_H; i++)
+		sum_theta_h(g, samples, model, &parts, i, false, &sums[i]);
+	masking_free(&parts.masking);
+	for (int i = 0; i < SAMPLES_THETA_H; i++) {
+		for (int w = 0; w < WEIGHT_COUNT; w++) {
+			all.difference[w] += sums[i].difference[w];
+			all.measured[w] += sums[i].measured[w];
+		}
+		all.square += sums[i].square;
+		all.cube_root += sums[i].cube_root;
+		all.log += sums[i].log;
+		all.n += sums[i].n;
+	}
+	if (!(all.measured[WEIGHT_COSINE] > 0))
+		return STATUS_NO_DATA;
+	for (int w = 0; w < WEIGHT_COUNT; w++)
+		metrics->error[w] = all.difference[w] / all.measured[w];
+	metrics->rms_cosine = sqrt(all.square / (double)all.n);
+	metrics->rms_cube_root = sqrt(all.cube_root / (double)all.n);
+	metrics->log_error = all.log / (double)all.n;
+	metrics->samples = all.n;
+	return STATUS_OK;
+}
+
+enum status metrics_rows(const struct geometry *g, const struct samples *samples, const struct cook_torrance *model,
+			 int threads, struct metrics_row row[TABLE_ROWS])
+{
+	struct sums *sums = calloc(TABLE_ROWS, sizeof *sums);
+	struct parts parts;
+
+	if (!sums || parts_init(&parts, g, model) != STATUS_OK) {
+		free(sums);
+		return STATUS_NO_MEMORY;
+	}
+#pragma omp parallel for num_threads(threads) schedule(dynamic) if (threads > 1)
+	for (int i = 0; i < SAMPLES_THETA_H; i++)
+		sum_theta_h(g, samples, model, &parts, i, true, sums + (size_t)i * SAMPLES_THETA_D);
+	masking_free(&parts.masking);
+	for (int n = 0; n < TABLE_ROWS; n++)
+		row[n] = (struct metrics_row){sums[n].difference[g->weight], sums[n].measured[g->weight], sums[n].n};
+	free(sums);
+	return STATUS_OK;
+}

@@ -1,0 +1,329 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/error/objective.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum status objective_init(struct objective *o, const struct table *table, const struct fit_options *options,
+			   const struct ndf_class *class, int threads, enum masking_density density)
+{
+	*o = (struct objective){
+		.table = table, .options = options, .class = class, .kernel = kernel_pick(), .threads = threads};
+	o->tabulated.sigma = NAN;
+	objective_forget(o);
+	objective_unpin(o);
+	o->s = aligned_alloc(64, (size_t)table->n_blocks * KERNEL_BLOCK * sizeof *o->s);
+	o->sums = malloc((size_t)table->n_blocks * sizeof *o->sums);
+	if (!o->s || !o->sums || masking_init(&o->masking, table->geometry->q_min, density) != STATUS_OK) {
+		objective_free(o);
+		return STATUS_NO_MEMORY;
+	}
+	return STATUS_OK;
+}
+
+void objective_forget(struct objective *o)
+{
+	o->start.kd[0] = NAN;
+}
+
+void objective_begin(struct objective *o, const struct linear *linear)
+{
+	o->start = *linear;
+	if (linear->error == 0)
+		objective_forget(o);
+}
+
+void objective_free(struct objective *o)
+{
+	masking_free(&o->masking);
+	free(o->s);
+	free(o->sums);
+	o->s = NULL;
+	o->sums = NULL;
+}
+
+enum status shape_ndf(const struct shape *shape, const struct ndf_class *class, enum lambda_form lambda,
+		      struct ndf *ndf)
+{
+	enum status status = ndf_init(ndf, class, shape->sigma, shape->sigma, shape->gamma);
+
+	if (status == STATUS_OK && lambda != LAMBDA_EXACT)
+		status = ndf_set_lambda_form(ndf, lambda);
+	return status == STATUS_UNSUPPORTED ? STATUS_OK : status;
+}
+
+static void tabulate_ndf(struct objective *o, const struct ndf *ndf)
+{
+	const struct geometry *g = o->table->geometry;
+
+	for (int i = 0; i < SAMPLES_THETA_H; i++)
+		o->D[i] = ndf_D(ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
+	if (o->options->gaf != GAF_V_GROOVE)
+		masking_fill(&o->masking, ndf);
+}
+
+void objective_use(struct objective *o, const struct ndf *ndf)
+{
+	o->given = true;
+	tabulate_ndf(o, ndf);
+}
+
+static enum status tabulate(struct objective *o, const struct shape *shape)
+{
+	struct ndf ndf;
+
+	const bool same_gamma = shape->gamma == o->tabulated.gamma || !ndf_has_gamma(o->class);
+
+	if (o->given || (shape->sigma == o->tabulated.sigma && same_gamma))
+		return STATUS_OK;
+	const enum status status = shape_ndf(shape, o->class, o->options->lambda, &ndf);
+
+	if (status != STATUS_OK)
+		return status;
+	tabulate_ndf(o, &ndf);
+	o->tabulated = *shape;
+	return STATUS_OK;
+}
+
+/* D F beyond this, a sigma below 1e-10, counts as this: times the largest geo, 1/(4 1e-9 1e-9), it is still a float. */
+#define ROW_MAX 1e20
+
+static void fill_rows(struct objective *o, const struct shape *shape)
+{
+	float F[SAMPLES_THETA_D];
+
+	for (int j = 0; j < SAMPLES_THETA_D; j++)
+		F[j] = (float)fresnel_F(o->options->fresnel, o->table->geometry->entries.theta[j].cos_d, shape->ior,
+					shape->k);
+	for (int i = 0; i < SAMPLES_THETA_H; i++)
+		for (int j = 0; j < SAMPLES_THETA_D; j++)
+			o->row[j + SAMPLES_THETA_D * i] = (float)fmin(o->D[i], ROW_MAX) * F[j];
+}
+
+static void lobe_block(struct objective *o, int block)
+{
+	static const enum kernel_gaf gaf[GAF_COUNT] = {[GAF_UNCORRELATED] = KERNEL_SEPARABLE,
+						       [GAF_CORRELATED] = KERNEL_CORRELATED,
+						       [GAF_V_GROOVE] = KERNEL_STATIC};
+	const struct kernel_g1 g1 = masking_kernel(&o->masking);
+	const struct kernel_slots slots = table_slots(o->table, block);
+
+	o->kernel->lobe(gaf[o->options->gaf], &g1, o->row, &slots, o->s + (size_t)block * KERNEL_BLOCK);
+}
+
+/* What a pass is asked by each of the problems, one a channel or one for all of them. */
+struct look {
+	int n_problems;
+	bool wanted[SAMPLES_CHANNELS];
+	struct kernel_look at[SAMPLES_CHANNELS];
+};
+
+static void pass_block(struct objective *o, const struct look *look, int block)
+{
+	const struct table *t = o->table;
+	const size_t at = (size_t)block * KERNEL_BLOCK;
+	const int members = (block < t->n_pair_blocks ? 2 : 1) * SAMPLES_CHANNELS / look->n_problems;
+
+	for (int p = 0; p < look->n_problems; p++)
+		if (look->wanted[p])
+			o->kernel->pass(members, table_value(t, block, p), t->w + at, o->s + at, &look->at[p],
+					&o->sums[block][p]);
+}
+
+/* One pass over the table; with `lobe`, s is computed on the way, while each block is in cache. The blocks' sums are
+ * added in their order: the result is the same to the bit for any number of threads. Tasks, not a parallel loop: on a
+ * busy machine this thread then does what the others do not come to, and never waits for one that has not begun. */
+static void pass(struct objective *o, const struct look *look, bool lobe, struct kernel_sums total[])
+{
+	enum { CHUNK = 8 };
+	const size_t n_blocks = (size_t)o->table->n_blocks;
+
+	o->passes++;
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion" /* clang finds some in what it makes of the loop */
+#pragma omp taskloop grainsize(CHUNK) default(shared) if (o->threads > 1)
+	for (size_t block = 0; block < n_blocks; block++) {
+		if (lobe)
+			lobe_block(o, (int)block);
+		pass_block(o, look, (int)block);
+	}
+#pragma GCC diagnostic pop
+	for (int p = 0; p < look->n_problems; p++) {
+		total[p] = (struct kernel_sums){0};
+		for (size_t block = 0; look->wanted[p] && block < n_blocks; block++) {
+			const struct kernel_sums *sums = &o->sums[block][p];
+
+			total[p].error += sums->error;
+			for (int a = 0; a < 2; a++)
+				total[p].slope[a] += sums->slope[a];
+			for (int a = 0; a < 3; a++)
+				total[p].curvature[a] += sums->curvature[a];
+		}
+	}
+}
+
+enum status objective_lobe(struct objective *o, const struct shape *shape)
+{
+	const enum status status = tabulate(o, shape);
+
+	if (status != STATUS_OK)
+		return status;
+	fill_rows(o, shape);
+	for (int block = 0; block < o->table->n_blocks; block++)
+		lobe_block(o, block);
+	return STATUS_OK;
+}
+
+double objective_most(const struct fit_options *options, bool specular)
+{
+	if (options->blend > 0)
+		return specular ? options->blend : 1 - options->blend;
+	return options->unbounded ? FIT_FACTOR_MAX : 1;
+}
+
+/* The table is evaluated in float: kd/pi is one. */
+static double diffuse_value(double kd)
+{
+	return (double)(float)(kd / M_PI);
+}
+
+void objective_unpin(struct objective *o)
+{
+	const struct fit_options *options = o->options;
+	const double kd = options->diffuse ? diffuse_value(objective_most(options, false)) : 0;
+	const double ks = options->specular ? objective_most(options, true) : 0;
+
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		o->box[c] = (struct objective_box){{0, 0}, {kd, ks}};
+}
+
+void objective_pin(struct objective *o, int channel, bool specular, double value)
+{
+	const double at = specular ? (double)(float)value : diffuse_value(value);
+
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		if (c == channel || o->options->gray)
+			o->box[c].lo[specular] = o->box[c].hi[specular] = at;
+}
+
+/* The mean measurement of a problem. */
+static double mean_measured(const struct objective *o, int p)
+{
+	const struct table *t = o->table;
+
+	return (o->options->gray ? (t->sum[0] + t->sum[1] + t->sum[2]) / SAMPLES_CHANNELS : t->sum[p]) / t->sum_w;
+}
+
+/* A solve that is to be this precise is one of a small step, relative: what the last one has learnt holds for it too. */
+#define PRECISE 1e-5
+
+/* With one kd and ks for all channels there is one problem, their sum; else one a channel. */
+static void start(const struct objective *o, struct l1 problem[], int n_problems, double tolerance, bool certify)
+{
+	const double *sum = o->table->sum;
+
+	for (int p = 0; p < n_problems; p++) {
+		const struct objective_box *box = &o->box[p];
+		const double scale = n_problems == 1 ? sum[0] + sum[1] + sum[2] : sum[p];
+		const double known[2] = {o->start.kd[p] / M_PI, o->start.ks[p]};
+		const bool faint = sum[p] > 0 && mean_measured(o, p) < L1_FAR * fmax(box->hi[0], box->hi[1]);
+		const bool cold = isnan(o->start.kd[0]) || faint, at_zero = box->lo[0] == 0 && box->lo[1] == 0;
+
+		l1_start(&problem[p], box->lo, box->hi,
+			 !cold     ? known
+			 : at_zero ? NULL
+				   : box->lo,
+			 !cold && tolerance < PRECISE ? o->start.h[p] : NULL, scale, tolerance, certify);
+	}
+}
+
+/* On the bound to the last bit: kd is then the bound itself. */
+static double kd_of(const struct objective *o, double diffuse)
+{
+	const double most = objective_most(o->options, false);
+
+	return diffuse < diffuse_value(most) ? diffuse * M_PI : most;
+}
+
+static void finish(const struct objective *o, const struct l1 problem[], int n_problems, struct linear *linear)
+{
+	double sum = 0;
+
+	*linear = (struct linear){.error = 0};
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		const struct l1 *p = &problem[n_problems == 1 ? 0 : c];
+
+		linear->kd[c] = kd_of(o, p->best[0]);
+		linear->ks[c] = p->best[1];
+		sum += o->table->sum[c];
+	}
+	for (int p = 0; p < n_problems; p++) {
+		linear->channel[p] = problem[p].error / sum;
+		linear->error += linear->channel[p];
+		memcpy(linear->h[p], problem[p].h, sizeof linear->h[p]);
+		if (problem[p].certify)
+			linear->lower_bound += l1_lower_bound(&problem[p]) / sum;
+	}
+}
+
+/* A fiftieth of the mean measurement: below it, how near a residual is to 0 is told by the data, not by the model. */
+static double window_floor(const struct objective *o, int p)
+{
+	return 0.02 * mean_measured(o, p);
+}
+
+double objective_eval(struct objective *o, const struct shape *shape, double tolerance, bool certify,
+		      struct linear *linear)
+{
+	const int n_problems = o->options->gray ? 1 : SAMPLES_CHANNELS;
+	struct l1 problem[SAMPLES_CHANNELS];
+	struct kernel_sums total[SAMPLES_CHANNELS];
+	bool lobe = true, going = true;
+
+	if (tabulate(o, shape) != STATUS_OK) {
+		*linear = (struct linear){.error = OBJECTIVE_NO_FIT};
+		return OBJECTIVE_NO_FIT;
+	}
+	fill_rows(o, shape);
+	start(o, problem, n_problems, tolerance, certify);
+	while (going) {
+		struct look look = {.n_problems = n_problems};
+
+		for (int p = 0; p < n_problems; p++) {
+			look.wanted[p] = !problem[p].done;
+			look.at[p] = (struct kernel_look){problem[p].x[0], problem[p].x[1], problem[p].tau,
+							  window_floor(o, p)};
+		}
+		pass(o, &look, lobe, total);
+		lobe = going = false;
+		for (int p = 0; p < n_problems; p++) {
+			if (!problem[p].done)
+				l1_update(&problem[p], total[p].error, total[p].slope, total[p].curvature);
+			going |= !problem[p].done;
+		}
+	}
+	finish(o, problem, n_problems, linear);
+	o->start = *linear;
+	return linear->error;
+}
+
+double objective_error(struct objective *o, const struct shape *shape, const double kd[], const double ks[])
+{
+	double error = 0, sum = 0;
+	struct kernel_sums total[SAMPLES_CHANNELS];
+	struct look look = {.n_problems = SAMPLES_CHANNELS};
+
+	if (tabulate(o, shape) != STATUS_OK)
+		return OBJECTIVE_NO_FIT;
+	fill_rows(o, shape);
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		look.wanted[c] = true;
+		look.at[c] = (struct kernel_look){.d = kd[c] / M_PI, .ks = ks[c]};
+	}
+	pass(o, &look, true, total);
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		error += total[c].error;
+		sum += o->table->sum[c];
+	}
+	return error / sum;
+}

@@ -1,0 +1,373 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/page/page.h"
+#include "fit/page/html.h"
+#include "fit/page/page_style.h"
+
+#include <gsl/gsl_statistics_double.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Cells */
+
+/* A number of five digits or so, whole ones whole. */
+static void put_shown(FILE *page, double x)
+{
+	if (isinf(x))
+		fputs(x > 0 ? "\xe2\x88\x9e" : "\xe2\x88\x92\xe2\x88\x9e", page);
+	else if (!isnan(x))
+		fprintf(page, fabs(x) < 1e15 && x == rint(x) ? "%.0f" : "%.5g", x);
+}
+
+/* A table cell that sorts by its exact value. */
+static void put_number(FILE *page, double x, bool best)
+{
+	char text[CSV_NUMBER_SIZE];
+	fprintf(page, "<td class=\"n%s\" data-v=\"%s\">", best ? " best" : "",
+		isinf(x) ? "Infinity" : csv_number(text, x));
+	put_shown(page, x);
+	fputs("</td>", page);
+}
+
+static void put_text_cell(FILE *page, const char *text, bool is_long)
+{
+	fputs(is_long ? "<td class=\"long\">" : "<td>", page);
+	html_text(page, text);
+	fputs("</td>", page);
+}
+
+/* A table that scrolls by itself where it is wider than the page. */
+static void begin_table(FILE *page, const char *class, const char *label)
+{
+	fputs("<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"", page);
+	html_text(page, label);
+	fprintf(page, "\"><table class=\"%s\">\n<thead><tr>", class);
+}
+
+static void put_head(FILE *page, const char *text, const char *class, bool sorted)
+{
+	fprintf(page, "<th scope=\"col\"%s%s%s%s>", *class ? " class=\"" : "", class, *class ? "\"" : "",
+		sorted ? " aria-sort=\"ascending\"" : "");
+	html_text(page, text);
+	fputs("</th>", page);
+}
+
+static void end_table(FILE *page)
+{
+	fputs("</tbody></table></div>\n", page);
+}
+
+static enum status put_picture(FILE *page, const char *material, const struct page_picture *picture,
+			       struct error *error)
+{
+	if (!picture->path)
+		return STATUS_OK;
+	fprintf(page, "<figure><div class=\"pan\"><img loading=\"lazy\"%s alt=\"",
+		picture->plot ? " class=\"plot\"" : "");
+	if (material) {
+		html_text(page, material);
+		fputs(": ", page);
+	}
+	html_text(page, picture->alt);
+	fputs("\" src=\"", page);
+	const enum status status = html_file(page, picture->path, picture->type, error);
+	fputs("\"></div>\n<figcaption>", page);
+	html_text(page, picture->caption);
+	fputs("</figcaption></figure>\n", page);
+	return status;
+}
+
+/* why: NULL if none is missing. */
+static void put_missing(FILE *page, const char *why)
+{
+	if (!why)
+		return;
+	fputs("<p>Pictures are missing: ", page);
+	html_text(page, why);
+	fputs("</p>\n", page);
+}
+
+/* The beginning */
+
+static void put_top(FILE *page, const struct materials *materials)
+{
+	/* Nothing is fetched from anywhere: what the page needs it has inside. */
+	fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+	      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
+	      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none';img-src data:;"
+	      "style-src 'unsafe-inline';script-src 'unsafe-inline'\">\n"
+	      "<meta name=\"color-scheme\" content=\"light dark\">\n"
+	      "<link rel=\"icon\" href=\"data:,\">\n<title>stdfit: fits of ",
+	      page);
+	if (materials->n == 1)
+		html_text(page, materials->material[0].name);
+	else
+		fprintf(page, "%zu materials", materials->n);
+	fprintf(page, "</title>\n<style>\n%s</style>\n</head>\n<body>\n<main>\n<h1>Fits of ", page_style);
+	if (materials->n == 1)
+		html_text(page, materials->material[0].name);
+	else
+		fprintf(page, "%zu materials", materials->n);
+	fputs("</h1>\n<p>Cook-Torrance models, a diffuse term and one microfacet lobe, fitted to measured BRDFs. The "
+	      "error "
+	      "E is the sum of |measured \xe2\x88\x92 model| over that of measured, 0 for a perfect model and 1 for a "
+	      "black "
+	      "one.</p>\n",
+	      page);
+}
+
+/* Mean, median, worst, wins of one NDF. value: room for one number a material. */
+static void put_summary_row(FILE *page, const struct error_grid *grid, int ndf, double *value)
+{
+	size_t n = 0, wins = 0;
+	for (size_t m = 0; m < grid->n; m++) {
+		if (!isnan(grid->line[m].error[ndf]))
+			value[n++] = grid->line[m].error[ndf];
+		wins += grid->line[m].best == ndf;
+	}
+	fputs("<tr><th scope=\"row\">", page);
+	html_text(page, grid->ndf[ndf]);
+	fputs("</th>", page);
+	put_number(page, (double)n, false);
+	put_number(page, n ? gsl_stats_mean(value, 1, n) : NAN, false);
+	put_number(page, n ? gsl_stats_median(value, 1, n) : NAN, false);
+	put_number(page, n ? gsl_stats_max(value, 1, n) : NAN, false);
+	put_number(page, (double)wins, false);
+	fputs("</tr>\n", page);
+}
+
+static enum status put_summary(FILE *page, const struct error_grid *grid)
+{
+	static const char *const head[] = {"NDF", "materials", "mean E", "median E", "worst E", "lowest E for"};
+	double *value = calloc(grid->n + 1, sizeof(*value));
+	if (!value)
+		return STATUS_NO_MEMORY;
+	fputs("<h2 id=\"summary\">Summary</h2>\n", page);
+	begin_table(page, "summary", "Summary by NDF");
+	for (size_t h = 0; h < sizeof head / sizeof *head; h++)
+		put_head(page, head[h], h ? "n" : "", false);
+	fputs("</tr></thead><tbody>\n", page);
+	for (int n = 0; n < grid->n_ndf; n++)
+		put_summary_row(page, grid, n, value);
+	end_table(page);
+	free(value);
+	return STATUS_OK;
+}
+
+static char *const *best_row(const struct error_grid *grid, const struct error_line *line)
+{
+	for (size_t r = 0; r < line->material->n_rows && line->best >= 0; r++)
+		if (!strcmp(line->material->row[r][RESULT_NDF], grid->ndf[line->best]))
+			return line->material->row[r];
+	return NULL;
+}
+
+static void put_material_row(FILE *page, const struct error_grid *grid, const struct error_line *line)
+{
+	static const enum result_column shape[] = {RESULT_SIGMA, RESULT_GAMMA, RESULT_IOR};
+	char *const *best = best_row(grid, line);
+	fprintf(page, "<tr><th scope=\"row\"><a href=\"#m-%s\">", line->material->file_name);
+	html_text(page, line->material->name);
+	fputs("</a></th>", page);
+	put_text_cell(page, best ? grid->ndf[line->best] : "", false);
+	for (int n = 0; n < grid->n_ndf; n++)
+		put_number(page, line->error[n], n == line->best);
+	for (size_t s = 0; s < sizeof shape / sizeof *shape; s++)
+		put_number(page, best ? result_number(best, shape[s]) : NAN, false);
+	put_text_cell(page, best ? best[RESULT_STATUS] : line->material->row[0][RESULT_STATUS], true);
+	fputs("</tr>\n", page);
+}
+
+static void put_materials(FILE *page, const struct error_grid *grid)
+{
+	static const char *const shape[] = {"sigma", "gamma", "n"};
+	fputs("<h2 id=\"materials\">Materials</h2>\n<p class=\"soft\">Lowest errors are bold; sigma, gamma and n are "
+	      "those of "
+	      "the best fit.</p>\n",
+	      page);
+	begin_table(page, "sortable", "Materials");
+	put_head(page, "material", "", true);
+	put_head(page, "best", "", false);
+	for (int n = 0; n < grid->n_ndf; n++) {
+		char head[64];
+		snprintf(head, sizeof head, "E, %.32s", grid->ndf[n]);
+		put_head(page, head, "n", false);
+	}
+	for (size_t s = 0; s < sizeof shape / sizeof *shape; s++)
+		put_head(page, shape[s], "n", false);
+	put_head(page, "status", "", false);
+	fputs("</tr></thead><tbody>\n", page);
+	for (size_t m = 0; m < grid->n; m++)
+		put_material_row(page, grid, &grid->line[m]);
+	end_table(page);
+}
+
+enum status page_begin(struct page *page, FILE *file, const struct materials *materials,
+		       const struct page_picture *errors, const char *missing, struct error *error)
+{
+	*page = (struct page){.file = file, .materials = materials};
+	if (error_grid_make(materials, &page->grid))
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	put_top(file, materials);
+	if (put_summary(file, &page->grid))
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	const enum status status = put_picture(file, NULL, errors, error);
+	put_missing(file, missing);
+	put_materials(file, &page->grid);
+	fputs("<h2 id=\"details\">Each material</h2>\n", file);
+	return status;
+}
+
+/* One material */
+
+static const struct {
+	enum result_column column;
+	const char *name;
+} parameters[] = {
+	{RESULT_ERROR, "E"},   {RESULT_SIGMA, "sigma"}, {RESULT_GAMMA, "gamma"}, {RESULT_IOR, "n"},
+	{RESULT_KD_R, "kd r"}, {RESULT_KD_G, "g"},      {RESULT_KD_B, "b"},      {RESULT_KS_R, "ks r"},
+	{RESULT_KS_G, "g"},    {RESULT_KS_B, "b"},
+};
+enum { PARAMETERS = sizeof parameters / sizeof *parameters };
+
+/* What is shown elsewhere, or is the same for all rows of a material. */
+static bool is_certainty(enum result_column column)
+{
+	static const enum result_column elsewhere[] = {RESULT_MATERIAL,  RESULT_NDF,    RESULT_PARAMS, RESULT_GAF,
+						       RESULT_FRESNEL,   RESULT_LAMBDA, RESULT_WEIGHT, RESULT_BINS,
+						       RESULT_MAX_THETA, RESULT_PATH,   RESULT_INPUT,  RESULT_OPTIONS,
+						       RESULT_VERSION,   RESULT_SECONDS};
+	for (int p = 0; p < PARAMETERS; p++)
+		if (parameters[p].column == column)
+			return false;
+	for (size_t e = 0; e < sizeof elsewhere / sizeof *elsewhere; e++)
+		if (elsewhere[e] == column)
+			return false;
+	return true;
+}
+
+static void put_row_head(FILE *page, char *const *row)
+{
+	fputs("<tr><th scope=\"row\">", page);
+	html_text(page, row[RESULT_NDF]);
+	fputs("</th>", page);
+}
+
+static void put_parameters(FILE *page, const struct material *material)
+{
+	enum { SHORT_PARAMS = 120 };
+	fputs("<h4>Parameters</h4>\n", page);
+	begin_table(page, "parameters", "Parameters");
+	put_head(page, "NDF", "", false);
+	for (int p = 0; p < PARAMETERS; p++)
+		put_head(page, parameters[p].name, "n", false);
+	put_head(page, "further", "long", false);
+	fputs("</tr></thead><tbody>\n", page);
+	for (size_t r = 0; r < material->n_rows; r++) {
+		char *const *row = material->row[r];
+		put_row_head(page, row);
+		for (int p = 0; p < PARAMETERS; p++)
+			put_number(page, result_number(row, parameters[p].column), false);
+		put_text_cell(page,
+			      strlen(row[RESULT_PARAMS]) <= SHORT_PARAMS ? row[RESULT_PARAMS]
+									 : "the values of D: see the result table",
+			      true);
+		fputs("</tr>\n", page);
+	}
+	end_table(page);
+}
+
+/* All else that the result table says of each fit, a line a fit. Columns that are empty for all are left out. */
+static void put_certainty(FILE *page, const struct material *material)
+{
+	bool shown[RESULT_COLUMNS] = {false};
+	for (enum result_column c = 0; c < RESULT_COLUMNS; c++)
+		for (size_t r = 0; r < material->n_rows && is_certainty(c); r++)
+			shown[c] |= *material->row[r][c] != '\0';
+	fputs("<h4>How sure, and how near</h4>\n", page);
+	begin_table(page, "certainty", "Certainty and other errors");
+	put_head(page, "NDF", "", false);
+	for (enum result_column c = 0; c < RESULT_COLUMNS; c++)
+		if (shown[c])
+			put_head(page, result_columns[c].name, result_columns[c].number ? "n" : "", false);
+	fputs("</tr></thead><tbody>\n", page);
+	for (size_t r = 0; r < material->n_rows; r++) {
+		put_row_head(page, material->row[r]);
+		for (enum result_column c = 0; c < RESULT_COLUMNS; c++) {
+			if (shown[c] && result_columns[c].number)
+				put_number(page, result_number(material->row[r], c), false);
+			else if (shown[c])
+				put_text_cell(page, material->row[r][c], c == RESULT_STATUS);
+		}
+		fputs("</tr>\n", page);
+	}
+	end_table(page);
+	fputs("<p class=\"soft\">status, undetermined: parameters over whose whole domain the error, the others "
+	      "refitted, moves by less than 0.1 %; starts: local searches; starts_agreeing: how many ended within "
+	      "0.1 % of the best; at_bound: parameters that ended on a bound of their domain; error_, rms_ and "
+	      "log_: the same parameters under other weights and metrics; albedo_: the largest share of the light "
+	      "from one direction that the model sends back; energy, gain: more than it gets.</p>\n",
+	      page);
+}
+
+static void put_origin(FILE *page, const struct material *material)
+{
+	static const enum result_column column[] = {RESULT_OPTIONS, RESULT_VERSION, RESULT_PATH, RESULT_INPUT};
+	static const char *const name[] = {"options", "fitted by stdfit", "file", "size and hash"};
+	fputs("<dl>", page);
+	for (size_t c = 0; c < sizeof column / sizeof *column; c++) {
+		fprintf(page, "<dt>%s</dt><dd>", name[c]);
+		html_text(page, *material->row[0][column[c]] ? material->row[0][column[c]] : "not known");
+		fputs("</dd>", page);
+	}
+	fputs("</dl>\n", page);
+}
+
+/* The best NDF and its error, behind the name. */
+static void put_best(FILE *page, const struct error_grid *grid, const struct error_line *line)
+{
+	fputs(" <span class=\"soft\">", page);
+	if (line->best >= 0) {
+		fputs("best: ", page);
+		html_text(page, grid->ndf[line->best]);
+		fputs(", E ", page);
+		put_shown(page, line->error[line->best]);
+	} else {
+		fputs("no fit", page);
+	}
+	fputs("</span>", page);
+}
+
+enum status page_material(const struct page *page, size_t m, const struct page_picture *picture, int n_pictures,
+			  const char *missing, struct error *error)
+{
+	const struct material *material = &page->materials->material[m];
+	FILE *file = page->file;
+	enum status status = STATUS_OK;
+	fprintf(file, "<details class=\"material\" id=\"m-%s\"><summary><h3>", material->file_name);
+	html_text(file, material->name);
+	fputs("</h3>", file);
+	put_best(file, &page->grid, &page->grid.line[m]);
+	fputs("</summary>\n", file);
+	for (int p = 0; p < n_pictures && !status; p++)
+		status = put_picture(file, material->name, &picture[p], error);
+	put_missing(file, missing);
+	put_parameters(file, material);
+	put_certainty(file, material);
+	put_origin(file, material);
+	fputs("</details>\n", file);
+	return status;
+}
+
+void page_end(const struct page *page)
+{
+	fprintf(page->file,
+		"</main>\n<footer><p class=\"soft\">Made by stdfit %s.</p></footer>\n<script>\n%s</script>\n</body>\n"
+		"</html>\n",
+		STDFIT_VERSION, page_script);
+}
+
+void page_free(struct page *page)
+{
+	error_grid_free(&page->grid);
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* page - the HTML of a report: one file that needs no other and no network. page_begin(), page_material() for each
+ * material in order, page_end(). Failures to write show in ferror(). */
+#ifndef PAGE_H
+#define PAGE_H
+
+#include "fit/sources/error_grid.h"
+
+/* struct page_picture - a picture in a file. */
+struct page_picture {
+	char *path;                /* NULL: there is none, and nothing is shown */
+	const char *type;          /* "image/png", "image/svg+xml" */
+	bool plot;                 /* drawn on white: turned over where the reader's system is dark */
+	const char *alt, *caption; /* `alt` follows the name of the material, if there is one */
+};
+
+/* struct page - a page under way. */
+struct page {
+	FILE *file; /* borrowed */
+	const struct materials *materials;
+	struct error_grid grid;
+};
+
+/* page_begin - head, summary, and the sortable table of all materials. errors: the picture of the sorted errors;
+ * missing: why it is missing, NULL if it is not meant to be there. STATUS_NO_MEMORY; STATUS_IO: the picture cannot be read. page_free() is due in any case. */
+MUST_CHECK enum status page_begin(struct page *page, FILE *file, const struct materials *materials,
+				  const struct page_picture *errors, const char *missing, struct error *error);
+
+/* page_material - of material m: its pictures, parameters, certainty, options. missing: why pictures are missing; NULL if
+ * none is. */
+MUST_CHECK enum status page_material(const struct page *page, size_t m, const struct page_picture *picture,
+				     int n_pictures, const char *missing, struct error *error);
+
+void page_end(const struct page *page);
+void page_free(struct page *page);
+
+#endif

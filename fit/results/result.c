@@ -1,0 +1,452 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/results/result.h"
+#include "data_readers/text_quote.h"
+#include "fit/results/balance.h"
+#include "fit/search/free_form.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+const struct csv_column result_columns[RESULT_COLUMNS] = {
+	[RESULT_MATERIAL] = {"material", false},
+	[RESULT_NDF] = {"ndf", false},
+	[RESULT_ERROR] = {"error", true},
+	[RESULT_KD_R] = {"kd_r", true},
+	[RESULT_KD_G] = {"kd_g", true},
+	[RESULT_KD_B] = {"kd_b", true},
+	[RESULT_KS_R] = {"ks_r", true},
+	[RESULT_KS_G] = {"ks_g", true},
+	[RESULT_KS_B] = {"ks_b", true},
+	[RESULT_SIGMA] = {"sigma", true},
+	[RESULT_GAMMA] = {"gamma", true},
+	[RESULT_IOR] = {"ior", true},
+	[RESULT_PARAMS] = {"params", false},
+	[RESULT_GAF] = {"gaf", false},
+	[RESULT_FRESNEL] = {"fresnel", false},
+	[RESULT_LAMBDA] = {"lambda", false},
+	[RESULT_WEIGHT] = {"weight", false},
+	[RESULT_BINS] = {"bins", false},
+	[RESULT_MAX_THETA] = {"max_theta", true},
+	[RESULT_SAMPLES] = {"samples", true},
+	[RESULT_STATUS] = {"status", false},
+	[RESULT_STARTS] = {"starts", true},
+	[RESULT_STARTS_AGREEING] = {"starts_agreeing", true},
+	[RESULT_AT_BOUND] = {"at_bound", false},
+	[RESULT_ERROR_NONE] = {"error_none", true},
+	[RESULT_ERROR_COSINE] = {"error_cosine", true},
+	[RESULT_ERROR_SOLID_ANGLE] = {"error_solid_angle", true},
+	[RESULT_RMS_COSINE] = {"rms_cosine", true},
+	[RESULT_RMS_CUBE_ROOT] = {"rms_cube_root", true},
+	[RESULT_LOG_ERROR] = {"log_error", true},
+	[RESULT_EVALUATIONS] = {"evaluations", true},
+	[RESULT_SECONDS] = {"seconds", true},
+	[RESULT_PATH] = {"path", false},
+	[RESULT_INPUT] = {"input", false},
+	[RESULT_OPTIONS] = {"options", false},
+	[RESULT_VERSION] = {"version", false},
+	[RESULT_ALBEDO_R] = {"albedo_r", true},
+	[RESULT_ALBEDO_G] = {"albedo_g", true},
+	[RESULT_ALBEDO_B] = {"albedo_b", true},
+	[RESULT_ENERGY] = {"energy", false},
+};
+
+void result_input(char text[RESULT_INPUT_SIZE], const struct samples *samples)
+{
+	snprintf(text, RESULT_INPUT_SIZE, "%" PRIu64 ":%016" PRIx64, samples->file_size, samples->file_hash);
+}
+
+bool result_is_input(const char *input, const struct samples *samples)
+{
+	char text[RESULT_INPUT_SIZE];
+	result_input(text, samples);
+	return !*input || !strcmp(input, text);
+}
+
+enum status result_check_input(const char *input, const struct samples *samples, const char *path, struct error *error)
+{
+	char name[TEXT_QUOTE_SIZE];
+	if (result_is_input(input, samples))
+		return STATUS_OK;
+	text_quote(path, name, sizeof name);
+	return error_set(error, STATUS_FORMAT, "cannot show '%s': it is not the file any more that was fitted", name);
+}
+
+char *result_material(const char *path)
+{
+	static const char suffix[] = ".binary";
+	const char *slash = strrchr(path, '/');
+	char *name = strdup(slash ? slash + 1 : path);
+	if (!name)
+		return NULL;
+	const size_t length = strlen(name), cut = sizeof suffix - 1;
+	if (length > cut && !strcmp(name + length - cut, suffix))
+		name[length - cut] = '\0';
+	return name;
+}
+
+/* A row under construction; number[] holds the text of the cells that are numbers. */
+struct row {
+	const char *cell[RESULT_COLUMNS];
+	char number[RESULT_COLUMNS][CSV_NUMBER_SIZE];
+};
+
+static void set_number(struct row *row, enum result_column column, double x)
+{
+	row->cell[column] = csv_number(row->number[column], x);
+}
+
+/* What is known about a row before its fit, and of a fit that failed. */
+static struct row *row_new(const struct result_source *source, const struct fit_options *options,
+			   const struct ndf_class *ndf, const char *status)
+{
+	struct row *row = calloc(1, sizeof(*row));
+	if (!row)
+		return NULL;
+	row->cell[RESULT_NDF] = ndf_name(ndf);
+	row->cell[RESULT_GAF] = gaf_name(options->gaf);
+	row->cell[RESULT_FRESNEL] = fresnel_name(options->fresnel);
+	row->cell[RESULT_LAMBDA] = lambda_form_name(options->lambda);
+	row->cell[RESULT_WEIGHT] = weight_name(options->weight);
+	row->cell[RESULT_BINS] = bins_name(options->bins);
+	set_number(row, RESULT_MAX_THETA, options->max_theta);
+	row->cell[RESULT_STATUS] = status;
+	row->cell[RESULT_PATH] = source->path;
+	row->cell[RESULT_INPUT] = source->input;
+	row->cell[RESULT_OPTIONS] = source->options;
+	row->cell[RESULT_VERSION] = STDFIT_VERSION;
+	return row;
+}
+
+/* Adds the row to the table and frees it. */
+static enum status row_finish(struct row *row, struct csv_table *table, const char *path)
+{
+	char *material = result_material(path);
+	enum status status = STATUS_NO_MEMORY;
+	if (material) {
+		row->cell[RESULT_MATERIAL] = material;
+		status = csv_table_add(table, row->cell);
+	}
+	free(material);
+	free(row);
+	return status;
+}
+
+enum { PARAMS_SIZE = 8192 }; /* pl has 90 node values */
+
+/* Adds name=value to the text of the column params. */
+static void add_param(char params[PARAMS_SIZE], const char *name, double value)
+{
+	char number[CSV_NUMBER_SIZE];
+	const size_t used = strlen(params);
+	snprintf(params + used, PARAMS_SIZE - used, "%s%s=%s", used ? ";" : "", name, csv_number(number, value));
+}
+
+/* The values of pl: D0 to D89 at the rows of the table, which their bins place, and D90 at the horizon. */
+static void set_nodes(const struct fit_options *options, const struct ndf *ndf, char params[PARAMS_SIZE])
+{
+	for (int i = 0; i < FREE_FORM_VALUES; i++) {
+		const struct halfdiff_trig h = bins_trig(options->bins, i < SAMPLES_THETA_H ? i : 0, 0, 0);
+		const struct vec3 horizon = {1, 0, 1e-300};
+		char name[16];
+		snprintf(name, sizeof name, "D%d", i);
+		add_param(params, name, ndf_D(ndf, i < SAMPLES_THETA_H ? (struct vec3){h.sin_h, 0, h.cos_h} : horizon));
+	}
+}
+
+/* sigma and gamma have columns; what else a distribution has goes to params. */
+static void set_ndf(struct row *row, const struct ndf *ndf, char params[PARAMS_SIZE])
+{
+	for (int i = 0; ndf_param_at(ndf->class, i); i++) {
+		const char *name = ndf_param_at(ndf->class, i)->name;
+		if (!strcmp(name, "sigma"))
+			set_number(row, RESULT_SIGMA, ndf->param[i]);
+		else if (!strcmp(name, "gamma"))
+			set_number(row, RESULT_GAMMA, ndf->param[i]);
+		else
+			add_param(params, name, ndf->param[i]);
+	}
+	if (!ndf_has_gamma(ndf->class) && !ndf_is_tabulated(ndf->class))
+		set_number(row, RESULT_GAMMA, ndf->gamma);
+}
+
+static void set_model(struct row *row, const struct fit_options *options, const struct fit_result *result,
+		      char params[PARAMS_SIZE])
+{
+	const struct cook_torrance *model = &result->model;
+	for (int c = 0; c < 3 && result->diffuse; c++)
+		set_number(row, RESULT_KD_R + (enum result_column)c, model->kd[c]);
+	if (!result->specular)
+		return;
+	for (int c = 0; c < 3; c++)
+		set_number(row, RESULT_KS_R + (enum result_column)c, model->ks[c]);
+	if (ndf_is_tabulated(model->ndf.class))
+		set_nodes(options, &model->ndf, params);
+	else
+		set_ndf(row, &model->ndf, params);
+	if (model->fresnel != FRESNEL_NONE)
+		set_number(row, RESULT_IOR, model->n);
+	if (model->fresnel == FRESNEL_CONDUCTOR)
+		add_param(params, "k", model->k);
+	row->cell[RESULT_PARAMS] = params;
+	row->cell[RESULT_LAMBDA] = lambda_form_name(model->ndf.lambda_form);
+}
+
+static void set_metrics(struct row *row, const struct fit_metrics *metrics)
+{
+	set_number(row, RESULT_SAMPLES, (double)metrics->samples);
+	set_number(row, RESULT_ERROR_NONE, metrics->error[WEIGHT_NONE]);
+	set_number(row, RESULT_ERROR_COSINE, metrics->error[WEIGHT_COSINE]);
+	set_number(row, RESULT_ERROR_SOLID_ANGLE, metrics->error[WEIGHT_SOLID_ANGLE]);
+	set_number(row, RESULT_RMS_COSINE, metrics->rms_cosine);
+	set_number(row, RESULT_RMS_CUBE_ROOT, metrics->rms_cube_root);
+	set_number(row, RESULT_LOG_ERROR, metrics->log_error);
+}
+
+static void set_balance(struct row *row, const struct cook_torrance *model)
+{
+	const struct balance balance = balance_of(model);
+	for (int c = 0; c < 3; c++)
+		set_number(row, RESULT_ALBEDO_R + (enum result_column)c, balance.albedo[c]);
+	row->cell[RESULT_ENERGY] = balance_name(&balance);
+}
+
+enum { NAMES_SIZE = 64, STATUS_SIZE = NAMES_SIZE + 16 };
+
+/* The names of enum fit_bound's bits. */
+static const char *names_text(char text[NAMES_SIZE], unsigned bits)
+{
+	static const char *const name[] = {"sigma", "gamma", "ior",  "kd_r", "kd_g",
+					   "kd_b",  "ks_r",  "ks_g", "ks_b", "k"};
+	char *at = text;
+	*at = '\0';
+	for (size_t b = 0; b < sizeof name / sizeof *name; b++) {
+		if (!(bits & 1u << b))
+			continue;
+		if (at > text)
+			*at++ = ';';
+		at = stpcpy(at, name[b]);
+	}
+	return text;
+}
+
+static const char *status_text(char text[STATUS_SIZE], const struct fit_result *result)
+{
+	char names[NAMES_SIZE];
+	if (result->end == FIT_LIMIT)
+		return "limit";
+	if (!result->undetermined)
+		return "converged";
+	snprintf(text, STATUS_SIZE, "undetermined: %s", names_text(names, result->undetermined));
+	return text;
+}
+
+enum status result_add(struct csv_table *table, const struct result_source *source, const struct fit_options *options,
+		       const struct fit_result *result)
+{
+	char params[PARAMS_SIZE] = "", bounds[NAMES_SIZE], text[STATUS_SIZE];
+	struct row *row = row_new(source, options, result->model.ndf.class, status_text(text, result));
+	if (!row)
+		return STATUS_NO_MEMORY;
+	set_number(row, RESULT_ERROR, result->error);
+	set_model(row, options, result, params);
+	set_metrics(row, &result->metrics);
+	set_balance(row, &result->model);
+	set_number(row, RESULT_STARTS, result->starts);
+	set_number(row, RESULT_STARTS_AGREEING, result->starts_agreeing);
+	row->cell[RESULT_AT_BOUND] = names_text(bounds, result->at_bound);
+	set_number(row, RESULT_EVALUATIONS, (double)result->evaluations);
+	set_number(row, RESULT_SECONDS, result->seconds);
+	return row_finish(row, table, source->path);
+}
+
+enum status result_add_failure(struct csv_table *table, const struct result_source *source,
+			       const struct fit_options *options, const char *reason)
+{
+	struct error text;
+	snprintf(text.text, sizeof text.text, "failed: %s", reason);
+	for (int i = 0; i < options->n_ndf; i++) {
+		struct row *row = row_new(source, options, options->ndf[i], text.text);
+		if (!row || row_finish(row, table, source->path))
+			return STATUS_NO_MEMORY;
+	}
+	return STATUS_OK;
+}
+
+bool result_failed(char *const *row)
+{
+	return !strncmp(row[RESULT_STATUS], "failed", strlen("failed"));
+}
+
+double result_number(char *const *row, enum result_column column)
+{
+	double x = NAN;
+	return csv_parse_number(row[column], &x) ? x : NAN;
+}
+
+static double number_or(char *const *row, enum result_column column, double otherwise)
+{
+	const double x = result_number(row, column);
+	return isnan(x) ? otherwise : x;
+}
+
+static enum status bad_cell(char *const *row, enum result_column column, struct error *error)
+{
+	char found[TEXT_QUOTE_SIZE];
+	text_quote(row[column], found, sizeof found);
+	return error_set(error, STATUS_FORMAT, "the row's column %s does not describe a model: '%s'",
+			 result_columns[column].name, found);
+}
+
+/* kd or ks of a channel; the other channels of a term that is there have theirs. */
+static bool is_factor(char *const *row, enum result_column column, enum result_column first)
+{
+	const double x = number_or(row, column, 0);
+	return x >= 0 && x <= FIT_FACTOR_MAX && !*row[column] == !*row[first];
+}
+
+/* A cell that a lobe cannot do without. */
+static bool is_missing(char *const *row, enum result_column column)
+{
+	return *row[RESULT_KS_R] && !*row[column];
+}
+
+bool result_param(const char *params, const char *name, double *value)
+{
+	const size_t length = strlen(name);
+	for (const char *at = params; at; at = strchr(at, ';')) {
+		at += *at == ';';
+		if (!strncmp(at, name, length) && at[length] == '=') {
+			char text[CSV_NUMBER_SIZE];
+			const char *number = at + length + 1;
+			const size_t digits = strcspn(number, ";");
+			if (digits >= sizeof text)
+				return false;
+			snprintf(text, sizeof text, "%.*s", (int)digits, number);
+			return csv_parse_number(text, value);
+		}
+	}
+	return false;
+}
+
+/* pl, from the node values in params. */
+static enum status result_nodes(char *const *row, enum bins bins, struct ndf *ndf, struct pwl **pwl)
+{
+	double D[FREE_FORM_VALUES];
+	for (int i = 0; i < FREE_FORM_VALUES; i++) {
+		char name[16];
+		snprintf(name, sizeof name, "D%d", i);
+		if (!result_param(row[RESULT_PARAMS], name, &D[i]))
+			return STATUS_DOMAIN;
+	}
+	struct pwl *made = calloc(1, sizeof *made);
+	enum status status = made ? free_form_pwl(bins, D, made) : STATUS_NO_MEMORY;
+	if (status) {
+		free(made);
+		return status;
+	}
+	ndf_from_pwl(ndf, made);
+	*pwl = made;
+	return STATUS_OK;
+}
+
+void result_model_free(struct cook_torrance *model, struct pwl *pwl)
+{
+	model->ndf.pwl = NULL;
+	if (pwl)
+		pwl_free(pwl);
+	free(pwl);
+}
+
+/* The distribution of a row, from its columns and params; names the column to blame. */
+static enum status result_ndf(char *const *row, const struct ndf_class *class, struct ndf *ndf,
+			      enum result_column *wrong)
+{
+	double value[NDF_PARAMS_MAX];
+	enum lambda_form form;
+	*wrong = RESULT_SIGMA;
+	for (int i = 0; ndf_param_at(class, i); i++) {
+		const char *name = ndf_param_at(class, i)->name;
+		if (!strcmp(name, "sigma")) {
+			value[i] = number_or(row, RESULT_SIGMA, 1);
+			if (is_missing(row, RESULT_SIGMA) || !(value[i] >= NDF_SIGMA_MIN && value[i] <= NDF_SIGMA_MAX))
+				return STATUS_DOMAIN;
+		} else if (!strcmp(name, "gamma")) {
+			*wrong = RESULT_GAMMA;
+			value[i] = number_or(row, RESULT_GAMMA, 2.5);
+			if (is_missing(row, RESULT_GAMMA))
+				return STATUS_DOMAIN;
+		} else {
+			*wrong = RESULT_PARAMS;
+			/* Without a specular term there are none. */
+			if (!result_param(row[RESULT_PARAMS], name, &value[i])) {
+				if (*row[RESULT_KS_R])
+					return STATUS_DOMAIN;
+				value[i] = 1;
+			}
+		}
+	}
+	if (ndf_init_params(ndf, class, value))
+		return STATUS_DOMAIN;
+	*wrong = RESULT_LAMBDA;
+	if (lambda_form_find(row[RESULT_LAMBDA], &form))
+		return STATUS_DOMAIN;
+	return form == LAMBDA_EXACT ? STATUS_OK : ndf_set_lambda_form(ndf, form);
+}
+
+enum status result_model(char *const *row, struct cook_torrance *model, struct fit_options *options, struct pwl **pwl,
+			 struct error *error)
+{
+	*pwl = NULL;
+	*model = (struct cook_torrance){.n = number_or(row, RESULT_IOR, 1.5)};
+	const struct ndf_class *ndf = ndf_find(row[RESULT_NDF]);
+	if (result_failed(row))
+		return bad_cell(row, RESULT_STATUS, error);
+	if (!ndf)
+		return bad_cell(row, RESULT_NDF, error);
+	if (gaf_find(row[RESULT_GAF], &options->gaf))
+		return bad_cell(row, RESULT_GAF, error);
+	if (fresnel_find(row[RESULT_FRESNEL], &options->fresnel))
+		return bad_cell(row, RESULT_FRESNEL, error);
+	if (weight_find(row[RESULT_WEIGHT], &options->weight))
+		return bad_cell(row, RESULT_WEIGHT, error);
+	if (bins_find(row[RESULT_BINS], &options->bins))
+		return bad_cell(row, RESULT_BINS, error);
+	options->max_theta = number_or(row, RESULT_MAX_THETA, 90);
+	if (!(options->max_theta > 0 && options->max_theta <= 90))
+		return bad_cell(row, RESULT_MAX_THETA, error);
+	for (enum result_column c = 0; c < 3; c++) {
+		if (!is_factor(row, RESULT_KD_R + c, RESULT_KD_R))
+			return bad_cell(row, RESULT_KD_R + c, error);
+		if (!is_factor(row, RESULT_KS_R + c, RESULT_KS_R))
+			return bad_cell(row, RESULT_KS_R + c, error);
+		model->kd[c] = number_or(row, RESULT_KD_R + c, 0);
+		model->ks[c] = number_or(row, RESULT_KS_R + c, 0);
+	}
+	if (!(model->n > 0 && !isinf(model->n)) || (options->fresnel != FRESNEL_NONE && is_missing(row, RESULT_IOR)))
+		return bad_cell(row, RESULT_IOR, error);
+	if (options->fresnel == FRESNEL_CONDUCTOR && *row[RESULT_KS_R] &&
+	    !(result_param(row[RESULT_PARAMS], "k", &model->k) && model->k >= 0))
+		return bad_cell(row, RESULT_PARAMS, error);
+	model->gaf = options->gaf;
+	model->fresnel = options->fresnel;
+	enum result_column wrong;
+	if (ndf_is_tabulated(ndf))
+		return result_nodes(row, options->bins, &model->ndf, pwl) ? bad_cell(row, RESULT_PARAMS, error)
+									  : STATUS_OK;
+	if (result_ndf(row, ndf, &model->ndf, &wrong))
+		return bad_cell(row, wrong, error);
+	return STATUS_OK;
+}
+
+int result_order(const void *a, const void *b)
+{
+	static const enum result_column key[] = {RESULT_MATERIAL, RESULT_NDF, RESULT_PATH};
+	char *const *const row_a = *(char **const *)a, *const *const row_b = *(char **const *)b;
+	for (size_t k = 0; k < sizeof key / sizeof *key; k++) {
+		const int order = strcmp(row_a[key[k]], row_b[key[k]]);
+		if (order)
+			return order;
+	}
+	return 0;
+}

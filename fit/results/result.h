@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* result - the result table: one row per material and NDF, its columns, and the way back from a row to a model. */
+#ifndef RESULT_H
+#define RESULT_H
+
+#include "fit/results/csv.h"
+#include "fit/search/fit.h"
+
+enum result_column {
+	RESULT_MATERIAL,
+	RESULT_NDF,
+	RESULT_ERROR,
+	RESULT_KD_R,
+	RESULT_KD_G,
+	RESULT_KD_B,
+	RESULT_KS_R,
+	RESULT_KS_G,
+	RESULT_KS_B,
+	RESULT_SIGMA,
+	RESULT_GAMMA,
+	RESULT_IOR,
+	RESULT_PARAMS,
+	RESULT_GAF,
+	RESULT_FRESNEL,
+	RESULT_LAMBDA,
+	RESULT_WEIGHT,
+	RESULT_BINS,
+	RESULT_MAX_THETA,
+	RESULT_SAMPLES,
+	RESULT_STATUS,
+	RESULT_STARTS,
+	RESULT_STARTS_AGREEING,
+	RESULT_AT_BOUND,
+	RESULT_ERROR_NONE,
+	RESULT_ERROR_COSINE,
+	RESULT_ERROR_SOLID_ANGLE,
+	RESULT_RMS_COSINE,
+	RESULT_RMS_CUBE_ROOT,
+	RESULT_LOG_ERROR,
+	RESULT_EVALUATIONS,
+	RESULT_SECONDS,
+	RESULT_PATH,
+	RESULT_INPUT,
+	RESULT_OPTIONS,
+	RESULT_VERSION,
+	RESULT_ALBEDO_R,
+	RESULT_ALBEDO_G,
+	RESULT_ALBEDO_B,
+	RESULT_ENERGY,
+	RESULT_COLUMNS
+};
+
+extern const struct csv_column result_columns[RESULT_COLUMNS];
+
+/* struct result_source - what the rows of one file share. */
+struct result_source {
+	const char *path;
+	const char *input;   /* "<size>:<hash>", see result_input(); "" when it is no MERL file, NULL when not known */
+	const char *options; /* canonical text of every option that changes the result */
+};
+
+enum { RESULT_INPUT_SIZE = 40 };
+/* result_input - size and hash of a file's bytes: how a row says which bytes it was made from. */
+void result_input(char text[RESULT_INPUT_SIZE], const struct samples *samples);
+/* result_is_input - whether these are the bytes that a row was made from; `input` is its text, "": it does not say, true. */
+bool result_is_input(const char *input, const struct samples *samples);
+/* result_check_input - the same for samples read from `path`; STATUS_FORMAT with a message if they are not. */
+MUST_CHECK enum status result_check_input(const char *input, const struct samples *samples, const char *path,
+					  struct error *error);
+
+/* result_material - newly allocated: the name of a file without its directory and `.binary`; NULL: out of memory. */
+char *result_material(const char *path);
+
+/* result_add - appends the row of one fitted model. STATUS_NO_MEMORY. */
+MUST_CHECK enum status result_add(struct csv_table *table, const struct result_source *source,
+				  const struct fit_options *options, const struct fit_result *result);
+/* result_add_failure - appends a row per NDF that says why there is none. STATUS_NO_MEMORY. */
+MUST_CHECK enum status result_add_failure(struct csv_table *table, const struct result_source *source,
+					  const struct fit_options *options, const char *reason);
+bool result_failed(char *const *row);
+
+/* result_number - the value of a number column; NaN when empty. */
+double result_number(char *const *row, enum result_column column);
+
+/* result_model - the model that a row describes, and the options (G, Fresnel, bins, max_theta, weight) under which it
+ * was fitted. What a row leaves empty the model has not: kd = 0 or ks = 0. STATUS_FORMAT when the row is of a failed
+ * fit or describes no model; `error` then says what is wrong in it. */
+MUST_CHECK enum status result_model(char *const *row, struct cook_torrance *model, struct fit_options *options,
+				    struct pwl **pwl, struct error *error);
+/* result_model_free - frees the table, if any, that result_model() made for the model's NDF: *pwl, NULL unless it is pl. */
+void result_model_free(struct cook_torrance *model, struct pwl *pwl);
+
+/* result_param - the value of a parameter in the text of the column params, name=value;... Returns false, *value
+ * untouched, when it is not there or no number. */
+bool result_param(const char *params, const char *name, double *value);
+
+/* result_order - qsort order of rows (char ***): material, ndf, path. */
+int result_order(const void *a, const void *b);
+
+#endif

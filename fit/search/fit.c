@@ -1,0 +1,598 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/error/metrics.h"
+#include "fit/search/algorithms.h"
+#include "fit/search/free_form.h"
+#include "fit/search/undetermined.h"
+#include "src/names.h"
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+
+static const char *const weight_names[WEIGHT_COUNT] = {
+	[WEIGHT_NONE] = "none", [WEIGHT_COSINE] = "cosine", [WEIGHT_SOLID_ANGLE] = "solid-angle"};
+
+const char *weight_name(enum weight weight)
+{
+	return names_at(weight_names, WEIGHT_COUNT, (int)weight);
+}
+
+enum status weight_find(const char *name, enum weight *weight)
+{
+	const int found = names_find(weight_names, WEIGHT_COUNT, name);
+
+	if (found < 0)
+		return STATUS_DOMAIN;
+	*weight = (enum weight)found;
+	return STATUS_OK;
+}
+
+struct fit_options fit_options_default(void)
+{
+	struct fit_options o = {.gaf = GAF_UNCORRELATED,
+				.fresnel = FRESNEL_DIELECTRIC,
+				.weight = WEIGHT_NONE,
+				.bins = BINS_NODE,
+				.max_theta = 90,
+				.diffuse = true,
+				.specular = true,
+				.ior = NAN,
+				.gamma = NAN,
+				.sigma = NAN,
+				.threads = omp_get_max_threads(),
+				.time_s = 10};
+	static const char *const names[] = {"std", "ggx", "beckmann"};
+
+	for (int n = 0; n < 3; n++)
+		o.ndf[o.n_ndf++] = ndf_find(names[n]);
+	return o;
+}
+
+struct fit_context {
+	struct geometry geometry;
+};
+
+enum status fit_context_new(struct fit_context **context, int n_phi_d, const struct fit_options *options)
+{
+	struct fit_context *c = calloc(1, sizeof *c);
+	enum status status = c ? geometry_init(&c->geometry, n_phi_d, options) : STATUS_NO_MEMORY;
+
+	if (status != STATUS_OK) {
+		free(c);
+		c = NULL;
+	}
+	*context = c;
+	return status;
+}
+
+void fit_context_free(struct fit_context *context)
+{
+	if (context)
+		geometry_free(&context->geometry);
+	free(context);
+}
+
+/* One material under one set of options. */
+struct job {
+	const struct fit_context *context;
+	const struct samples *samples;
+	const struct fit_options *options;
+	struct levels levels;
+	struct evidence *evidence; /* of the last search of each class, by its place in the table of distributions */
+};
+
+static int place_of(const struct ndf_class *class)
+{
+	int place = 0;
+
+	while (ndf_at(place) != class)
+		place++;
+	return place;
+}
+
+static bool on_bound(double value, double low, double high)
+{
+	return value <= low * (1 + 1e-4) || value >= high * (1 - 1e-4);
+}
+
+static unsigned bounds_of(const struct fit_result *r, const struct fit_options *o)
+{
+	const struct cook_torrance *m = &r->model;
+	unsigned bits = 0;
+
+	if (o->specular) {
+		if (isnan(o->sigma) && on_bound(m->ndf.sigma_x, FIT_SIGMA_MIN, FIT_SIGMA_MAX))
+			bits |= BOUND_SIGMA;
+		const struct ndf_param *gamma = ndf_has_gamma(m->ndf.class) ? ndf_param_at(m->ndf.class, 1) : NULL;
+
+		if (gamma && isnan(o->gamma) &&
+		    on_bound(m->ndf.gamma - gamma->min, gamma->search_min - gamma->min, gamma->search_max - gamma->min))
+			bits |= BOUND_GAMMA;
+		if (o->fresnel != FRESNEL_NONE && isnan(o->ior) && on_bound(m->n - 1, FIT_IOR_MIN - 1, FIT_IOR_MAX - 1))
+			bits |= BOUND_IOR;
+		if (o->fresnel == FRESNEL_CONDUCTOR && on_bound(m->k, 0, FIT_K_MAX))
+			bits |= BOUND_K;
+	}
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		if (o->diffuse && (m->kd[c] <= 0 || m->kd[c] >= objective_most(o, false)))
+			bits |= (unsigned)BOUND_KD_R << c;
+		if (o->specular && (m->ks[c] <= 0 || m->ks[c] >= objective_most(o, true)))
+			bits |= (unsigned)BOUND_KS_R << c;
+	}
+	return bits;
+}
+
+/* Turns what a search found into a result; r->model.ndf is there already. */
+static enum status result_with_ndf(const struct job *job, const struct found *found, struct fit_result *r)
+{
+	const struct fit_options *o = job->options;
+	struct cook_torrance *m = &r->model;
+	enum status status;
+
+	r->diffuse = o->diffuse;
+	r->specular = o->specular;
+	m->gaf = o->gaf;
+	m->fresnel = o->fresnel;
+	m->n = found->shape.ior;
+	m->k = found->shape.k;
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		m->kd[c] = found->linear.kd[c];
+		m->ks[c] = found->linear.ks[c];
+	}
+	status = metrics_compute(&job->context->geometry, job->samples, m, o->threads, &r->metrics);
+	if (status != STATUS_OK)
+		return status;
+	r->error = r->metrics.error[o->weight];
+	r->lower_bound = found->linear.lower_bound;
+	r->end = found->limited ? FIT_LIMIT : FIT_CONVERGED;
+	r->starts = found->starts;
+	r->starts_agreeing = found->starts_agreeing;
+	r->at_bound = bounds_of(r, o);
+	r->evaluations = found->evaluations;
+	r->passes = found->passes;
+	return STATUS_OK;
+}
+
+static enum status result_of(const struct job *job, const struct ndf_class *class, const struct found *found,
+			     struct fit_result *r)
+{
+	enum status status;
+
+	*r = (struct fit_result){.pwl = NULL};
+	status = shape_ndf(&found->shape, class, job->options->lambda, &r->model.ndf);
+	return status == STATUS_OK ? result_with_ndf(job, found, r) : status;
+}
+
+/* Nested distributions: at these values of gamma a class is a simpler one, of the same sigma. */
+enum { NESTED = 2 };
+static const char *const nested_name[NESTED] = {"ggx", "beckmann"};
+static const struct nesting {
+	const char *class;
+	double gamma[NESTED]; /* NaN: not within the class */
+} nestings[] = {{"std", {2, INFINITY}}, {"hyper-cauchy", {2, NAN}}, {"gtr", {2, NAN}}};
+
+/* The other algorithms go without. So do the other forms of Lambda: GGX and Beckmann have theirs. */
+static const struct nesting *nesting_of(const struct job *job, const struct ndf_class *class)
+{
+	const struct fit_options *o = job->options;
+
+	for (size_t n = 0; n < sizeof nestings / sizeof *nestings; n++)
+		if (class == ndf_find(nestings[n].class) && isnan(o->gamma) && o->specular && !o->algorithm &&
+		    o->lambda == LAMBDA_EXACT)
+			return &nestings[n];
+	return NULL;
+}
+
+/* Fits that others build on, made when first wanted and shared by all that want them: those of the nested models, and
+ * those of each class by its place in the table of distributions. */
+struct nested {
+	bool done[NESTED], class_done[FIT_NDFS_MAX];
+	struct fit_result result[NESTED], of_class[FIT_NDFS_MAX];
+};
+
+static enum status fit_alone(const struct job *job, const struct ndf_class *class, struct fit_result *r)
+{
+	const double begin = search_clock();
+	struct found found;
+	enum status status = job->options->algorithm
+				     ? algorithm_run(&job->levels.table[SEARCH_LEVELS - 1], job->options, class, &found)
+				     : search_run(&job->levels, job->options, class, &found);
+
+	if (status == STATUS_OK)
+		status = result_of(job, class, &found, r);
+	if (status == STATUS_OK && !job->options->algorithm)
+		job->evidence[place_of(class)] = found.evidence;
+	r->seconds = search_clock() - begin;
+	return status;
+}
+
+static enum status fit_nested(const struct job *job, struct nested *nested, int which)
+{
+	if (nested->done[which])
+		return STATUS_OK;
+	nested->done[which] = true;
+	return fit_alone(job, ndf_find(nested_name[which]), &nested->result[which]);
+}
+
+/* Those within a class, at once where there are threads for it: two fits on a thread each wait less for one another
+ * than two threads within one. */
+static enum status fit_all_nested(const struct job *job, const struct nesting *nesting, struct nested *nested)
+{
+	const int outer = job->options->threads < NESTED ? job->options->threads : NESTED;
+	struct fit_options options = *job->options;
+	struct job own = *job;
+	enum status status[NESTED] = {STATUS_OK, STATUS_OK};
+
+	options.threads /= outer;
+	own.options = &options;
+#pragma omp parallel for num_threads(outer) schedule(static) if (outer > 1)
+	for (int n = 0; n < NESTED; n++)
+		if (!isnan(nesting->gamma[n]))
+			status[n] = fit_nested(&own, nested, n);
+	for (int n = 0; n < NESTED; n++)
+		if (status[n] != STATUS_OK)
+			return status[n];
+	return STATUS_OK;
+}
+
+/* A result that takes the place of another goes on counting where that one stood. */
+static void keep_effort(struct fit_result *taken, const struct fit_result *before)
+{
+	taken->starts = before->starts;
+	taken->starts_agreeing = before->starts_agreeing;
+	taken->evaluations = before->evaluations;
+	taken->passes = before->passes;
+	taken->seconds = before->seconds;
+}
+
+/* Takes the nested optimum over when it is better than what the richer model found: a richer model never loses. */
+static enum status take_nested(const struct job *job, struct fit_result *r, const struct ndf_class *class,
+			       const struct fit_result *from, double gamma)
+{
+	struct fit_result taken = *from;
+	const double sigma = from->model.ndf.sigma_x;
+	enum status status;
+
+	if (from->error >= r->error)
+		return STATUS_OK;
+	keep_effort(&taken, r);
+	*r = taken;
+	status = ndf_init(&r->model.ndf, class, sigma, sigma, gamma);
+	r->at_bound = bounds_of(r, job->options);
+	return status;
+}
+
+/* A search of an NDF that has been searched already: its trace goes on from there. */
+struct further {
+	const struct fit_options *options; /* whose trace it is */
+	long evaluations;
+	double seconds;
+};
+
+static void note_further(void *data, const struct fit_trace *point)
+{
+	const struct further *further = data;
+	struct fit_trace own = *point;
+
+	own.evaluations += further->evaluations;
+	own.seconds += further->seconds;
+	further->options->trace(further->options->trace_data, &own);
+}
+
+static void trace_further(struct fit_options *options, struct further *further)
+{
+	if (!options->trace)
+		return;
+	options->trace = note_further;
+	options->trace_data = further;
+}
+
+/* Goes down from the nested optima too. */
+static enum status start_from_nested(const struct job *job, const struct ndf_class *class,
+				     const struct nesting *nesting, const struct nested *nested, struct fit_result *r)
+{
+	const double begin = search_clock();
+	struct further further = {job->options, r->evaluations, r->seconds};
+	struct fit_options options = *job->options;
+	struct shape given[NESTED];
+	struct fit_result other;
+	struct found found;
+	enum status status;
+	int count = 0;
+
+	for (int n = 0; n < NESTED; n++) {
+		const struct cook_torrance *m = &nested->result[n].model;
+
+		if (!isnan(nesting->gamma[n]))
+			given[count++] = (struct shape){m->ndf.sigma_x, nesting->gamma[n], m->n, m->k};
+	}
+	const struct shape known = {r->model.ndf.sigma_x, r->model.ndf.gamma, r->model.n, r->model.k};
+
+	trace_further(&options, &further);
+	status = search_from(&job->levels, &options, class, given, count, &known, r->error, &found);
+	if (status == STATUS_OK && found.linear.error < r->error) {
+		status = result_of(job, class, &found, &other);
+		if (status == STATUS_OK && other.error < r->error) {
+			keep_effort(&other, r);
+			*r = other;
+		}
+	}
+	r->starts += found.starts;
+	r->starts_agreeing += found.starts_agreeing;
+	r->evaluations += found.evaluations;
+	r->passes += found.passes;
+	r->seconds += search_clock() - begin;
+	return status;
+}
+
+/* The rich model first, and alone on all threads: who asks for it waits least. Then the nested ones, as starts and as
+ * candidates. */
+static enum status fit_with_nested(const struct job *job, const struct ndf_class *class, const struct nesting *nesting,
+				   struct nested *nested, struct fit_result *r)
+{
+	enum status status = fit_alone(job, class, r);
+
+	if (status == STATUS_OK)
+		status = fit_all_nested(job, nesting, nested);
+	if (status == STATUS_OK)
+		status = start_from_nested(job, class, nesting, nested, r);
+	for (int n = 0; n < NESTED && status == STATUS_OK; n++)
+		if (!isnan(nesting->gamma[n]))
+			status = take_nested(job, r, class, &nested->result[n], nesting->gamma[n]);
+	return status;
+}
+
+/* A form of Lambda that exists at some gammas only: each of them is fitted, and the best taken. */
+static enum status fit_each_gamma(const struct job *job, const struct ndf_class *class, struct fit_result *r)
+{
+	struct fit_options options = *job->options;
+	struct job own = *job;
+	enum status status = STATUS_OK;
+	struct evidence *evidence = &job->evidence[place_of(class)], best_evidence = *evidence;
+	struct fit_result one = {0};
+	struct ndf ndf;
+	struct further sum = {.options = job->options};
+	long passes = 0;
+	double worst = 0;
+
+	own.options = &options;
+	trace_further(&options, &sum);
+	*r = (struct fit_result){.error = INFINITY};
+	for (options.gamma = 1.5; options.gamma <= 16 && status == STATUS_OK; options.gamma += 0.5) {
+		const struct shape shape = {.sigma = 1, .gamma = options.gamma};
+
+		if (shape_ndf(&shape, class, options.lambda, &ndf) != STATUS_OK)
+			continue;
+		status = fit_alone(&own, class, &one);
+		sum.evaluations += one.evaluations;
+		passes += one.passes;
+		sum.seconds += one.seconds;
+		if (status == STATUS_OK && one.error < r->error) {
+			*r = one;
+			best_evidence = *evidence;
+		}
+		worst = fmax(worst, one.error);
+	}
+	*evidence = best_evidence;
+	if (worst <= undetermined_limit(r->error))
+		r->undetermined = BOUND_GAMMA;
+	r->evaluations = sum.evaluations;
+	r->passes = passes;
+	r->seconds = sum.seconds;
+	return status;
+}
+
+static bool has_sparse_lambda(const struct job *job, const struct ndf_class *class)
+{
+	const struct fit_options *o = job->options;
+
+	return (o->lambda == LAMBDA_INTEGER || o->lambda == LAMBDA_HALF_INTEGER) && o->specular && isnan(o->gamma) &&
+	       (class == ndf_find("std") || class == ndf_find("hyper-cauchy") || class == ndf_find("t-family"));
+}
+
+static enum status fit_class(const struct job *job, const struct ndf_class *class, struct nested *nested,
+			     struct fit_result *r);
+
+/* The optima of all the parametric NDFs, of which hyper-cauchy and t-family are STD again. */
+static enum status fit_starts(const struct job *job, struct nested *nested, struct cook_torrance starts[],
+			      int *n_starts)
+{
+	static const char *const name[] = {"std", "ggx", "beckmann", "gtr", "low"};
+	enum status status = STATUS_OK;
+	struct fit_result r;
+
+	for (*n_starts = 0; *n_starts < 5 && status == STATUS_OK; (*n_starts)++) {
+		status = fit_class(job, ndf_find(name[*n_starts]), nested, &r);
+		starts[*n_starts] = r.model;
+	}
+	return status;
+}
+
+/* The piecewise-linear NDF, from the parametric optima. */
+static enum status fit_free_form(const struct job *job, struct nested *nested, struct fit_result *r)
+{
+	const double begin = search_clock();
+	struct nested fresh = {.done = {false}};
+	struct evidence evidence[FIT_NDFS_MAX] = {{.slice = {{{.error = 0}}}}};
+	struct fit_options exact = *job->options;
+	struct job own = *job;
+	struct cook_torrance starts[5];
+	struct found found;
+	int n_starts;
+	enum status status;
+
+	exact.lambda = LAMBDA_EXACT;
+	exact.gamma = NAN; /* of the starts: pl itself has none */
+	own.options = &exact;
+	const bool same = job->options->lambda == LAMBDA_EXACT && isnan(job->options->gamma);
+
+	if (!same)
+		own.evidence = evidence;
+	status = fit_starts(&own, same ? nested : &fresh, starts, &n_starts);
+	if (status != STATUS_OK)
+		return status;
+	*r = (struct fit_result){.pwl = calloc(1, sizeof *r->pwl)};
+	if (!r->pwl)
+		return STATUS_NO_MEMORY;
+	status = free_form_run(&job->levels, &exact, starts, n_starts, &found, r->pwl);
+	if (status == STATUS_OK) {
+		ndf_from_pwl(&r->model.ndf, r->pwl);
+		status = result_with_ndf(&own, &found, r);
+	}
+	if (status != STATUS_OK)
+		fit_result_free(r);
+	r->seconds = search_clock() - begin;
+	return status;
+}
+
+void fit_result_free(struct fit_result *result)
+{
+	if (result->pwl)
+		pwl_free(result->pwl);
+	free(result->pwl);
+	result->pwl = NULL;
+}
+
+static enum status fit_anew(const struct job *job, const struct ndf_class *class, struct nested *nested,
+			    struct fit_result *r)
+{
+	const struct nesting *nesting = nesting_of(job, class);
+
+	if (ndf_is_tabulated(class))
+		return fit_free_form(job, nested, r);
+	if (nesting)
+		return fit_with_nested(job, class, nesting, nested, r);
+	if (has_sparse_lambda(job, class))
+		return fit_each_gamma(job, class, r);
+	for (int n = 0; n < NESTED; n++)
+		if (class == ndf_find(nested_name[n])) {
+			const enum status status = fit_nested(job, nested, n);
+
+			*r = nested->result[n];
+			return status;
+		}
+	return fit_alone(job, class, r);
+}
+
+static enum status fit_class(const struct job *job, const struct ndf_class *class, struct nested *nested,
+			     struct fit_result *r)
+{
+	enum status status = STATUS_OK;
+	const int place = place_of(class);
+
+	if (!nested->class_done[place]) {
+		status = fit_anew(job, class, nested, &nested->of_class[place]);
+		/* A table belongs to one result only. */
+		nested->class_done[place] = status == STATUS_OK && !ndf_is_tabulated(class);
+	}
+	*r = nested->of_class[place];
+	return status;
+}
+
+/* BOUND_GAMMA where the fits of the nested models have shown already that gamma is determined. */
+static unsigned gamma_settled(const struct job *job, const struct ndf_class *class, const struct nested *nested,
+			      const struct fit_result *r)
+{
+	const struct nesting *nesting = nesting_of(job, class);
+	const double limit = undetermined_limit(r->error);
+
+	for (int n = 0; nesting && n < NESTED; n++)
+		if (!isnan(nesting->gamma[n]) && nested->result[n].error > limit)
+			return BOUND_GAMMA;
+	return 0;
+}
+
+/* Adds to a fit which of its parameters the data leave open. */
+static enum status find_undetermined(const struct job *job, const struct ndf_class *class, const struct nested *nested,
+				     struct fit_result *r)
+{
+	const double begin = search_clock();
+	const struct cook_torrance *m = &r->model;
+	const unsigned settled = gamma_settled(job, class, nested, r);
+	const struct shape best = {m->ndf.sigma_x, m->ndf.gamma, m->n, m->k};
+	struct fit_options options = *job->options;
+	enum status status = STATUS_OK;
+	unsigned found = 0;
+
+	if (has_sparse_lambda(job, class))
+		options.gamma = m->ndf.gamma; /* the other values have been fitted */
+	if (!options.algorithm)
+		status = undetermined_find(&job->levels, &options, class, &job->evidence[place_of(class)], &best,
+					   r->error, settled, &found, &r->evaluations);
+	r->undetermined |= found;
+	r->seconds += search_clock() - begin;
+	return status;
+}
+
+enum status fit_run(const struct fit_context *context, const struct samples *samples, const struct fit_options *options,
+		    struct fit_result *results, struct error *error)
+{
+	struct evidence evidence[FIT_NDFS_MAX] = {{.slice = {{{.error = 0}}}}};
+	struct job job = {.context = context, .samples = samples, .options = options, .evidence = evidence};
+	struct nested nested = {.done = {false}};
+	struct table full;
+	enum status status = table_init(&full, &context->geometry, samples, options->threads);
+
+	if (status == STATUS_NO_DATA)
+		return error_set(error, status, "no entry to fit: expected some valid ones that are not all zero");
+	if (status == STATUS_OK && options->algorithm)
+		job.levels.table[SEARCH_LEVELS - 1] = full; /* the others need no thinned tables */
+	else if (status == STATUS_OK)
+		status = levels_init(&job.levels, &full);
+	if (status != STATUS_OK)
+		return error_set(error, status, "%s", status_str(status));
+	for (int n = 0; n < options->n_ndf; n++)
+		results[n].pwl = NULL;
+	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++) {
+		status = fit_class(&job, options->ndf[n], &nested, &results[n]);
+		if (status == STATUS_OK)
+			status = find_undetermined(&job, options->ndf[n], &nested, &results[n]);
+	}
+	for (int n = 0; n < options->n_ndf && status != STATUS_OK; n++)
+		fit_result_free(&results[n]);
+	levels_free(&job.levels);
+	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
+}
+
+enum status fit_estimate(const struct fit_context *context, const struct samples *samples,
+			 const struct fit_options *options, double *error)
+{
+	struct levels levels;
+	struct table full;
+	enum status status = table_init(&full, &context->geometry, samples, options->threads);
+	bool known = true;
+
+	*error = INFINITY;
+	if (status != STATUS_OK)
+		return status;
+	status = levels_init(&levels, &full);
+	if (status != STATUS_OK)
+		return status;
+	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++) {
+		double one;
+
+		status = search_estimate(&levels, options, options->ndf[n], &one);
+		*error = fmin(*error, one);
+		known = known && isfinite(one);
+	}
+	if (!known)
+		*error = INFINITY;
+	levels_free(&levels);
+	return status;
+}
+
+enum status fit_eval(const struct samples *samples, const struct cook_torrance *model,
+		     const struct fit_options *options, struct fit_metrics *metrics, struct error *error)
+{
+	struct fit_options own = *options;
+	struct fit_context *context;
+	enum status status;
+
+	own.gaf = model->gaf;
+	status = fit_context_new(&context, samples->n_phi_d, &own);
+	if (status == STATUS_OK)
+		status = metrics_compute(&context->geometry, samples, model, options->threads, metrics);
+	fit_context_free(context);
+	if (status == STATUS_NO_DATA)
+		return error_set(error, status, "no entry to compare: expected some valid ones that are not all zero");
+	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
+}

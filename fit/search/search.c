@@ -1,0 +1,535 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/search/search.h"
+#include "fit/search/valley.h"
+#include <math.h>
+#include <nlopt.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+/* Slots of the thinned tables. Systematic samples this small estimate E to about 0.1, 0.03 and 0.003 %. */
+static const int level_slots[SEARCH_LEVELS - 1] = {3000, 12000, 60000};
+
+enum status levels_init(struct levels *levels, struct table *full)
+{
+	enum status status = STATUS_OK;
+
+	*levels = (struct levels){0};
+	levels->table[SEARCH_LEVELS - 1] = *full;
+	*full = (struct table){0};
+	for (int l = SEARCH_LEVELS - 2; l >= 0 && status == STATUS_OK; l--)
+		status = table_thin(&levels->table[l], &levels->table[l + 1], level_slots[l]);
+	if (status != STATUS_OK)
+		levels_free(levels);
+	return status;
+}
+
+void levels_free(struct levels *levels)
+{
+	for (int l = 0; l < SEARCH_LEVELS; l++)
+		table_free(&levels->table[l]);
+}
+
+struct search {
+	const struct levels *levels;
+	const struct fit_options *options;
+	const struct ndf_class *class;
+	struct space space;
+	_Atomic long evaluations;
+	struct space_point known; /* found before and in need of beating; its error is INFINITY when there is none */
+	double begin_s;
+	const char *stage;
+	double stage_best; /* least error of this stage */
+};
+
+double search_clock(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void begin_stage(struct search *s, const char *stage)
+{
+	s->stage = stage;
+	s->stage_best = INFINITY;
+}
+
+/* Counts an evaluation and tells the trace, if there is one, of a better shape. */
+static void note(void *user, const struct shape *shape, const struct linear *linear)
+{
+	struct search *s = user;
+	const double error = linear->error;
+
+	s->evaluations++;
+	if (!s->options->trace)
+		return;
+#pragma omp critical(search_trace)
+	if (error < s->stage_best) {
+		const struct fit_trace point = {s->class,     s->stage,       shape->sigma,
+						shape->gamma, shape->ior,     shape->k,
+						error,        s->evaluations, search_clock() - s->begin_s};
+
+		s->stage_best = error;
+		s->options->trace(s->options->trace_data, &point);
+	}
+}
+
+static bool cancelled(const struct search *s)
+{
+	return s->options->cancel && atomic_load_explicit(s->options->cancel, memory_order_relaxed);
+}
+
+static long grid_size(const struct search *s, int from)
+{
+	long size = 1;
+
+	for (int d = from; d < s->space.dims; d++)
+		size *= s->space.axis[d].count;
+	return size;
+}
+
+static void grid_place(const struct search *s, long index, struct space_point *place)
+{
+	for (int d = s->space.dims - 1; d >= 0; d--) {
+		const struct axis *a = &s->space.axis[d];
+
+		place->x[d] = space_x(&s->space, d, a->value[index % a->count]);
+		index /= a->count;
+	}
+}
+
+/* Evaluates the grid on the coarsest table. Neighbours along the last axes share G1 and begin the inner solve where
+ * the one before ended; a stretch of the grid begins afresh, so the result does not depend on the threads. */
+static enum status scan(struct search *s, struct space_point *grid)
+{
+	const long total = grid_size(s, 0);
+	const int first_ior = s->space.dims > 0 && s->space.coordinate[0] == COORDINATE_SIGMA
+				      ? 1 + (s->space.dims > 1 && s->space.coordinate[1] == COORDINATE_GAMMA)
+				      : 0;
+	const long stretch = grid_size(s, first_ior);
+	enum status status = STATUS_OK;
+
+#pragma omp parallel num_threads(s->options->threads) if (s->options->threads > 1)
+	{
+		struct objective o;
+		enum status mine = objective_init(&o, &s->levels->table[0], s->options, s->class, 1, MASKING_COARSE);
+
+#pragma omp for schedule(dynamic)
+		for (long n = 0; n < total; n += stretch) {
+			if (mine != STATUS_OK || cancelled(s))
+				continue;
+			objective_forget(&o);
+			for (long i = n; i < n + stretch; i++) {
+				grid_place(s, i, &grid[i]);
+				const struct shape shape = space_shape(&s->space, grid[i].x);
+
+				grid[i].error = objective_eval(&o, &shape, 2e-3, false, &grid[i].linear);
+				note(s, &shape, &grid[i].linear);
+			}
+		}
+		if (mine == STATUS_OK) {
+			objective_free(&o);
+		} else {
+#pragma omp critical
+			status = mine;
+		}
+	}
+	return status;
+}
+
+/* Whether no neighbour in the grid is better; of a plateau only the first place counts. */
+static bool is_valley(const struct search *s, const struct space_point *grid, long index)
+{
+	long step = 1;
+
+	for (int d = s->space.dims - 1; d >= 0; d--) {
+		const int count = s->space.axis[d].count, at = (int)(index / step % count);
+
+		if (at > 0 && grid[index - step].error <= grid[index].error)
+			return false;
+		if (at + 1 < count && grid[index + step].error < grid[index].error)
+			return false;
+		step *= count;
+	}
+	return true;
+}
+
+static int by_error(const void *a, const void *b)
+{
+	const struct space_point *p = a, *q = b;
+
+	if (p->error != q->error)
+		return p->error < q->error ? -1 : 1;
+	return memcmp(p->x, q->x, sizeof p->x);
+}
+
+enum { MOST_STARTS = 24 };
+
+/* The valleys of the grid, best first. Returns how many, at most MOST_STARTS. */
+static int pick_starts(const struct search *s, struct space_point *grid, struct space_point starts[])
+{
+	const long total = grid_size(s, 0);
+	long n_valleys = 0;
+	struct space_point *valley = malloc((size_t)total * sizeof *valley);
+
+	if (!valley)
+		return -1;
+	for (long n = 0; n < total; n++)
+		if (is_valley(s, grid, n))
+			valley[n_valleys++] = grid[n];
+	qsort(valley, (size_t)n_valleys, sizeof *valley, by_error);
+	const int count = n_valleys < MOST_STARTS ? (int)n_valleys : MOST_STARTS;
+
+	memcpy(starts, valley, (size_t)count * sizeof *starts);
+	free(valley);
+	return count;
+}
+
+/* How a level is searched. */
+struct stage {
+	const char *name;
+	int most;      /* places that go on from the level before, at most */
+	double margin; /* those whose error is within this of the best, relative */
+	struct local_how how;
+};
+/* On the small tables, whose error is rugged, the simplex method is the one that gets through. What is left to do on the
+ * full one is mostly a millionth of the error, on smooth ground: a quadratic model needs the fewest looks there. Where
+ * the valley is long and flat, it takes its time: the error has to be the least to 1e-6, whatever rounding does. */
+static const struct stage stages[SEARCH_LEVELS] = {
+	{"thin-1", 0, 0, {NLOPT_LN_SBPLX, 0.7, 2e-4, 150, false, 0}},
+	{"thin-2", 8, 0.02, {NLOPT_LN_SBPLX, 0.3, 3e-5, 150, false, 0}},
+	{"thin-3", 4, 3e-3, {NLOPT_LN_SBPLX, 0.2, 1e-6, 250, false, 0}},
+	{"full", 2, 1e-4, {NLOPT_LN_BOBYQA, 0.01, 3e-7, 400, true, 0}},
+};
+
+static bool near(const struct search *s, const struct space_point *a, const struct space_point *b)
+{
+	for (int d = 0; d < s->space.dims; d++)
+		if (fabs(a->x[d] - b->x[d]) >= 0.02 * (s->space.hi[d] - s->space.lo[d]))
+			return false;
+	return true;
+}
+
+/* Places too near a better one to lead anywhere else go; so do those too far behind the best. What has been found before
+ * counts as one of them. Returns how many stay. */
+static int thin_out(const struct search *s, struct space_point *place, int count, const struct stage *stage)
+{
+	int kept = 0;
+
+	qsort(place, (size_t)count, sizeof *place, by_error);
+	const double best = count > 0 ? fmin(place[0].error, s->known.error) : 0;
+
+	for (int n = 0; n < count && kept < stage->most; n++) {
+		bool repeats = isfinite(s->known.error) && near(s, &place[n], &s->known);
+
+		for (int m = 0; m < kept && !repeats; m++)
+			repeats = near(s, &place[n], &place[m]);
+		if (!repeats && place[n].error <= (1 + stage->margin) * best)
+			place[kept++] = place[n];
+	}
+	return kept;
+}
+
+/* Refines the places on one level's table one after the other; the calling thread leads, the others of its team help
+ * with the passes. */
+static enum status refine_in_turn(struct search *s, int level, struct space_point *place, int count,
+				  struct found *found)
+{
+	struct objective o;
+	enum status status =
+		objective_init(&o, &s->levels->table[level], s->options, s->class, s->options->threads, MASKING_COARSE);
+
+	if (status != STATUS_OK)
+		return status;
+	for (int n = 0; n < count && status == STATUS_OK; n++)
+		status = local_descend(&s->space, &o, &stages[level].how, note, s, &place[n], &found->limited);
+	if (level == SEARCH_LEVELS - 1)
+		found->passes += o.passes;
+	objective_free(&o);
+	return status;
+}
+
+/* The same, one place a thread. */
+static enum status refine_at_once(struct search *s, int level, struct space_point *place, int count)
+{
+	enum status status = STATUS_OK;
+
+#pragma omp parallel num_threads(s->options->threads) if (s->options->threads > 1)
+	{
+		struct objective o;
+		enum status mine =
+			objective_init(&o, &s->levels->table[level], s->options, s->class, 1, MASKING_COARSE);
+		const bool ready = mine == STATUS_OK;
+
+#pragma omp for schedule(dynamic)
+		for (int n = 0; n < count; n++) {
+			if (mine == STATUS_OK && !cancelled(s))
+				mine = local_descend(&s->space, &o, &stages[level].how, note, s, &place[n], NULL);
+		}
+		if (ready)
+			objective_free(&o);
+		if (mine != STATUS_OK)
+#pragma omp critical
+			status = mine;
+	}
+	return status;
+}
+
+/* Refines the places on a thinned table, whichever way keeps the threads busy. */
+static enum status refine_all(struct search *s, int level, struct space_point *place, int count, struct found *found)
+{
+	enum status status = STATUS_OK;
+
+	if (count >= s->options->threads || level == 0)
+		return refine_at_once(s, level, place, count);
+#pragma omp parallel num_threads(s->options->threads)
+#pragma omp single
+	status = refine_in_turn(s, level, place, count, found);
+	return status;
+}
+
+/* E below which a table is all but free of noise, and above which a search of such a table is not at its end. */
+#define NOISE_FREE 0.01
+#define NEXT_TO_NOTHING 1e-6
+
+/* Where the search of such a table is stuck on the floor of a valley, leads it on: on the smallest sample, then on the
+ * full table. */
+static enum status follow_valley(struct search *s, struct space_point *best, struct found *found)
+{
+	const bool limited = found->limited;
+	const double stage_best = s->stage_best;
+	struct space_point place = *best;
+	struct objective o;
+	enum status status;
+
+	if (s->space.dims < 2 || best->error > NOISE_FREE || best->error < NEXT_TO_NOTHING)
+		return STATUS_OK;
+	status = objective_init(&o, &s->levels->table[0], s->options, s->class, 1, MASKING_COARSE);
+	if (status != STATUS_OK)
+		return status;
+	begin_stage(s, stages[0].name);
+	status = valley_follow(&s->space, &o, note, s, &place);
+	objective_free(&o);
+	begin_stage(s, stages[SEARCH_LEVELS - 1].name);
+	s->stage_best = stage_best;
+	if (status == STATUS_OK)
+		status = refine_in_turn(s, SEARCH_LEVELS - 1, &place, 1, found);
+	if (status == STATUS_OK && place.error < best->error)
+		*best = place;
+	else
+		found->limited = limited;
+	return status;
+}
+
+/* Ends on the full table: refines the places, then solves for kd and ks of the best one to a certified optimum. */
+static enum status finish_in_turn(struct search *s, struct space_point *place, int count, struct found *found)
+{
+	const int full = SEARCH_LEVELS - 1;
+	struct objective o;
+	enum status status = STATUS_OK;
+
+	begin_stage(s, stages[full].name);
+	found->limited = false;
+	if (s->space.dims > 0)
+		status = refine_in_turn(s, full, place, count, found);
+	qsort(place, (size_t)count, sizeof *place, by_error);
+	if (status == STATUS_OK)
+		status = follow_valley(s, &place[0], found);
+	if (status == STATUS_OK)
+		status = objective_init(&o, &s->levels->table[full], s->options, s->class, s->options->threads,
+					MASKING_FINE);
+	if (status != STATUS_OK)
+		return status;
+	found->shape = space_shape(&s->space, place[0].x);
+	objective_begin(&o, &place[0].linear);
+	objective_eval(&o, &found->shape, 1e-7, true, &found->linear);
+	note(s, &found->shape, &found->linear);
+	found->passes += o.passes;
+	objective_free(&o);
+	return STATUS_OK;
+}
+
+static enum status finish(struct search *s, struct space_point *place, int count, struct found *found)
+{
+	enum status status = STATUS_OK;
+
+#pragma omp parallel num_threads(s->options->threads) if (s->options->threads > 1)
+#pragma omp single
+	status = finish_in_turn(s, place, count, found);
+	return status;
+}
+
+/* The next number in [0, 1) of the sequence splitmix64 (Steele et al. 2014). */
+static double next_uniform(uint64_t *state)
+{
+	uint64_t z = *state += 0x9e3779b97f4a7c15u;
+
+	z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+	z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+	return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
+}
+
+/* Random places, uniform in the coordinates. They start on the second table, which the scan has not seen: a valley that
+ * the coarsest one hides can still be found. */
+static void random_places(const struct search *s, struct space_point place[], int count)
+{
+	uint64_t state = s->options->seed;
+
+	for (int n = 0; n < count; n++)
+		for (int d = 0; d < s->space.dims; d++)
+			place[n].x[d] = s->space.lo[d] + (s->space.hi[d] - s->space.lo[d]) * next_uniform(&state);
+}
+
+/* How many of place[from .. count - 1] are within 0.1 % of the best of all, the known one included. */
+static int agreeing(const struct search *s, const struct space_point place[], int from, int count)
+{
+	double best = s->known.error;
+	int agree = 0;
+
+	for (int n = 0; n < count; n++)
+		best = fmin(best, place[n].error);
+	for (int n = from; n < count; n++)
+		agree += place[n].error <= 1.001 * best;
+	return agree;
+}
+
+/* The best place of each slice of the grid. */
+static void note_slices(const struct search *s, const struct space_point *grid, struct evidence *evidence)
+{
+	const long total = grid_size(s, 0);
+
+	for (int d = 0; d < s->space.dims; d++) {
+		const int count = s->space.axis[d].count;
+		const long step = grid_size(s, d + 1);
+
+		for (int i = 0; i < count; i++)
+			evidence->slice[d][i].error = INFINITY;
+		for (long n = 0; n < total; n++) {
+			struct space_point *best = &evidence->slice[d][n / step % count];
+
+			if (grid[n].error < best->error)
+				*best = grid[n];
+		}
+	}
+}
+
+/* The places to start from: the valleys of a scan. Returns how many, 0 on failure. */
+static int first_places(struct search *s, struct space_point place[], struct evidence *evidence, enum status *status)
+{
+	struct space_point *grid = calloc((size_t)grid_size(s, 0), sizeof *grid);
+	int count = 0;
+
+	begin_stage(s, "scan");
+	*status = grid ? scan(s, grid) : STATUS_NO_MEMORY;
+	if (*status == STATUS_OK) {
+		note_slices(s, grid, evidence);
+		count = pick_starts(s, grid, place);
+		if (count < 0)
+			*status = STATUS_NO_MEMORY;
+	}
+	free(grid);
+	return *status == STATUS_OK ? count : 0;
+}
+
+/* Runs the stages on the thinned tables. Returns how many places are left for the full one, best first. */
+static int descend(struct search *s, struct space_point place[], int count, struct found *found, enum status *status)
+{
+	const int n_random = s->options->starts;
+
+	for (int level = 0; level < SEARCH_LEVELS - 1 && *status == STATUS_OK; level++) {
+		int from = 0;
+
+		if (level > 0)
+			from = count = thin_out(s, place, count, &stages[level]);
+		if (level == 1) {
+			random_places(s, place + count, n_random);
+			count += n_random;
+		}
+		begin_stage(s, stages[level].name);
+		if (count > 0)
+			*status = refine_all(s, level, place, count, found);
+		if (level <= 1)
+			found->starts_agreeing += agreeing(s, place, from, count);
+	}
+	return *status == STATUS_OK ? thin_out(s, place, count, &stages[SEARCH_LEVELS - 1]) : 0;
+}
+
+static struct search new_search(const struct levels *levels, const struct fit_options *options,
+				const struct ndf_class *class)
+{
+	struct search s = {.levels = levels,
+			   .options = options,
+			   .class = class,
+			   .known = {.error = INFINITY},
+			   .begin_s = search_clock()};
+
+	space_init(&s.space, options, class);
+	return s;
+}
+
+enum status search_run(const struct levels *levels, const struct fit_options *options, const struct ndf_class *class,
+		       struct found *found)
+{
+	struct search s = new_search(levels, options, class);
+	struct space_point *place = calloc(MOST_STARTS + (size_t)options->starts + 1, sizeof *place);
+	enum status status = place ? STATUS_OK : STATUS_NO_MEMORY;
+	int count = 1;
+
+	*found = (struct found){.starts = 1, .starts_agreeing = s.space.dims == 0};
+	if (s.space.dims > 0 && status == STATUS_OK) {
+		count = first_places(&s, place, &found->evidence, &status);
+		found->starts = count + options->starts;
+		count = descend(&s, place, count, found, &status);
+	}
+	if (status == STATUS_OK)
+		status = finish(&s, place, count, found);
+	free(place);
+	found->evaluations = s.evaluations;
+	return cancelled(&s) ? STATUS_INTERRUPTED : status;
+}
+
+enum status search_estimate(const struct levels *levels, const struct fit_options *options,
+			    const struct ndf_class *class, double *error)
+{
+	struct search s = new_search(levels, options, class);
+	struct space_point place[MOST_STARTS + 1] = {{.error = 0}};
+	struct found found = {.starts = 0};
+	enum status status = STATUS_OK;
+	int count = s.space.dims > 0 ? first_places(&s, place, &found.evidence, &status) : 1;
+
+	for (int level = 0; level < 2 && status == STATUS_OK && s.space.dims > 0; level++) {
+		if (level > 0)
+			count = thin_out(&s, place, count, &stages[level]);
+		status = refine_all(&s, level, place, count, &found);
+	}
+	*error = INFINITY;
+	for (int n = 0; n < count && s.space.dims > 0; n++)
+		*error = fmin(*error, place[n].error);
+	return cancelled(&s) ? STATUS_INTERRUPTED : status;
+}
+
+enum status search_from(const struct levels *levels, const struct fit_options *options, const struct ndf_class *class,
+			const struct shape given[], int n_given, const struct shape *known, double error,
+			struct found *found)
+{
+	struct fit_options own = *options;
+	struct search s;
+	struct space_point place[SEARCH_GIVEN] = {{.error = 0}};
+	enum status status = STATUS_OK;
+
+	own.starts = 0;
+	s = new_search(levels, &own, class);
+	space_place(&s.space, known, s.known.x);
+	s.known.error = error;
+	*found = (struct found){.starts = n_given, .linear.error = INFINITY};
+	for (int n = 0; n < n_given; n++)
+		space_place(&s.space, &given[n], place[n].x);
+	const int count = descend(&s, place, n_given, found, &status);
+
+	if (count > 0 && status == STATUS_OK)
+		status = finish(&s, place, count, found);
+	found->evaluations = s.evaluations;
+	return cancelled(&s) ? STATUS_INTERRUPTED : status;
+}

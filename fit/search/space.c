@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/search/space.h"
+#include <math.h>
+
+static double *parameter(struct shape *shape, enum coordinate c)
+{
+	double *const at[] = {&shape->sigma, &shape->gamma, &shape->ior, &shape->k};
+
+	return at[c];
+}
+
+static double to_coordinate(enum coordinate c, double least_gamma, double value)
+{
+	switch (c) {
+	case COORDINATE_SIGMA:
+		return log(value);
+	case COORDINATE_GAMMA:
+		return log(value - least_gamma);
+	case COORDINATE_IOR:
+		return (value - 1) / (value + 1);
+	default:
+		return value / (value + 1);
+	}
+}
+
+static double from_coordinate(enum coordinate c, double least_gamma, double x)
+{
+	switch (c) {
+	case COORDINATE_SIGMA:
+		return exp(x);
+	case COORDINATE_GAMMA:
+		return least_gamma + exp(x);
+	case COORDINATE_IOR:
+		return (1 + x) / (1 - x);
+	default:
+		return x / (1 - x);
+	}
+}
+
+/* The grid of the scan. Where the lobe is as narrow as the first bins of theta_h, 0.01 to 0.3 deg wide, the error has valleys
+ * in sigma that a coarser grid steps over. Places in gamma are those of STD, above its least gamma; other NDFs get as many
+ * between the ends of theirs, up to 50. */
+static const struct axis scan_sigma = {{1e-4,   2e-4,   4e-4,   7e-4,   1e-3,   1.2e-3, 1.5e-3, 1.8e-3, 2.2e-3,
+					2.7e-3, 3.2e-3, 3.8e-3, 4.6e-3, 5.5e-3, 6.5e-3, 7.7e-3, 9e-3,   0.0125,
+					0.0175, 0.025,  0.035,  0.05,   0.07,   0.1,    0.14,   0.2,    0.28,
+					0.4,    0.55,   0.8,    1.2,    2,      4},
+				       33};
+static const struct axis scan_gamma = {{1e-4, 1e-3, 0.005, 0.015, 0.04, 0.1, 0.25, 0.7, 2, 6.5, 48.5}, 11};
+static const struct axis scan_ior = {{1.03, 1.15, 1.35, 1.8, 3, 8, 60}, 7};
+static const struct axis scan_k = {{0, 0.5, 2, 6, 30}, 5};
+
+static struct axis gamma_axis(double least, double low)
+{
+	struct axis axis = scan_gamma;
+	const double first = low - least, ratio = pow(50 / first, 1.0 / (axis.count - 1));
+
+	for (int n = 0; n < axis.count; n++)
+		axis.value[n] = least + (least == 1.5 ? axis.value[n] : first * pow(ratio, n));
+	return axis;
+}
+
+static void add_dim(struct space *s, enum coordinate c, double lowest, double highest, const struct axis *axis)
+{
+	const int d = s->dims++;
+
+	s->coordinate[d] = c;
+	s->lowest[d] = lowest;
+	s->highest[d] = highest;
+	s->lo[d] = to_coordinate(c, s->least_gamma, lowest);
+	s->hi[d] = to_coordinate(c, s->least_gamma, highest);
+	s->axis[d] = *axis;
+}
+
+void space_init(struct space *s, const struct fit_options *o, const struct ndf_class *class)
+{
+	*s = (struct space){.fixed = {o->sigma, o->gamma, o->ior, 0}};
+	if (!o->specular) {
+		/* Any valid shape will do: ks is 0. */
+		s->fixed = (struct shape){1, 2, 1.5, 0};
+		return;
+	}
+	if (isnan(o->sigma))
+		add_dim(s, COORDINATE_SIGMA, FIT_SIGMA_MIN, FIT_SIGMA_MAX, &scan_sigma);
+	if (ndf_has_gamma(class) && isnan(o->gamma)) {
+		const struct ndf_param *gamma = ndf_param_at(class, 1);
+		const struct axis axis = gamma_axis(gamma->min, gamma->search_min);
+
+		s->least_gamma = gamma->min;
+		add_dim(s, COORDINATE_GAMMA, gamma->search_min, gamma->search_max, &axis);
+	}
+	if (o->fresnel != FRESNEL_NONE && isnan(o->ior))
+		add_dim(s, COORDINATE_IOR, FIT_IOR_MIN, FIT_IOR_MAX, &scan_ior);
+	if (o->fresnel == FRESNEL_CONDUCTOR)
+		add_dim(s, COORDINATE_K, 0, FIT_K_MAX, &scan_k);
+}
+
+double space_value(const struct space *s, int d, double x)
+{
+	return fmin(fmax(from_coordinate(s->coordinate[d], s->least_gamma, x), s->lowest[d]), s->highest[d]);
+}
+
+struct shape space_shape(const struct space *s, const double x[])
+{
+	struct shape shape = s->fixed;
+
+	for (int d = 0; d < s->dims; d++)
+		*parameter(&shape, s->coordinate[d]) = space_value(s, d, x[d]);
+	return shape;
+}
+
+double space_x(const struct space *s, int d, double value)
+{
+	return to_coordinate(s->coordinate[d], s->least_gamma, fmin(fmax(value, s->lowest[d]), s->highest[d]));
+}
+
+void space_place(const struct space *s, const struct shape *shape, double x[])
+{
+	struct shape copy = *shape;
+
+	for (int d = 0; d < s->dims; d++)
+		x[d] = space_x(s, d, *parameter(&copy, s->coordinate[d]));
+}
+
+void space_pin(struct space *s, int d, double value)
+{
+	*parameter(&s->fixed, s->coordinate[d]) = value;
+	s->dims--;
+	for (; d < s->dims; d++) {
+		s->coordinate[d] = s->coordinate[d + 1];
+		s->lo[d] = s->lo[d + 1];
+		s->hi[d] = s->hi[d + 1];
+		s->lowest[d] = s->lowest[d + 1];
+		s->highest[d] = s->highest[d + 1];
+		s->axis[d] = s->axis[d + 1];
+	}
+}

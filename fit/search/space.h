@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* space - the shapes among which a fit searches: the free parameters among sigma, gamma, ior and k, in coordinates in
+ * which the valleys of the error are nearly straight. */
+#ifndef SPACE_H
+#define SPACE_H
+
+#include "fit/error/objective.h"
+
+enum { SPACE_DIMS = 4, SPACE_VALUES = 34 };
+
+enum coordinate {
+	COORDINATE_SIGMA, /* ln sigma */
+	COORDINATE_GAMMA, /* ln(gamma - the least gamma of the NDF) */
+	COORDINATE_IOR,   /* sqrt(F0) = (n - 1)/(n + 1) */
+	COORDINATE_K,     /* k/(k + 1) */
+};
+
+/* struct axis - values of one parameter, ascending: places of a grid. */
+struct axis {
+	double value[SPACE_VALUES];
+	int count;
+};
+
+struct space {
+	int dims; /* 0 .. SPACE_DIMS */
+	enum coordinate coordinate[SPACE_DIMS];
+	double lo[SPACE_DIMS], hi[SPACE_DIMS];          /* of each coordinate */
+	double lowest[SPACE_DIMS], highest[SPACE_DIMS]; /* of the parameters themselves */
+	double least_gamma;
+	struct axis axis[SPACE_DIMS];
+	struct shape fixed; /* values of the parameters that are not searched */
+};
+
+/* struct space_point - a point of a space, and E there on the table at hand. */
+struct space_point {
+	double x[SPACE_DIMS];
+	double error;
+	struct linear linear; /* kd and ks there; its error is 0 where they are not known */
+};
+
+/* space_init - what the options leave free for an NDF; nothing without a specular term. */
+void space_init(struct space *space, const struct fit_options *options, const struct ndf_class *class);
+/* space_shape - the shape at a point; space_place - the reverse, values out of range moved to the nearest end. */
+struct shape space_shape(const struct space *space, const double x[]);
+void space_place(const struct space *space, const struct shape *shape, double x[]);
+/* space_x - dimension d's coordinate of a value of its parameter; space_value - the reverse. */
+double space_x(const struct space *space, int d, double value);
+double space_value(const struct space *space, int d, double x);
+/* space_pin - takes dimension d out: its parameter has this value from now on, gamma = inf included. */
+void space_pin(struct space *space, int d, double value);
+
+#endif

@@ -1,0 +1,460 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/search/undetermined.h"
+#include <math.h>
+#include <string.h>
+
+/* One parameter held at one value: dimension `dim` of the space, or, where that is negative, kd or ks of a channel. */
+struct pin {
+	int dim, channel;
+	bool specular;
+	double value;
+};
+
+struct inquiry {
+	const struct levels *levels;
+	const struct fit_options *options;
+	const struct ndf_class *class;
+	const struct evidence *evidence;
+	struct space space;
+	struct shape best;
+	double error;   /* E of *best on the full table, */
+	double coarse;  /* and on the coarsest */
+	double lambert; /* there too: E without a specular term */
+	/* And what each channel's part of E rises by, at the least of the shapes that come into question, with kd at its
+	 * upper end, and without specular term. */
+	double rise[2][SAMPLES_CHANNELS], rise_of_best[2][SAMPLES_CHANNELS]; /* and that at *best */
+	_Atomic long evaluations;
+};
+
+/* What E may be, on each level's table, for its value on the full one to be in reach. On the materials at hand the samples
+ * were wrong about so small a difference of errors by 6e-4, 3e-5 and 1e-5 of E; the G1 of the search is good to 8e-6. */
+static const struct {
+	double relative, absolute;
+} slack[SEARCH_LEVELS] = {{3e-3, 2e-5}, {1.5e-3, 2e-5}, {1.1e-3, 2e-5}, {FIT_UNDETERMINED, FIT_UNDETERMINED_FLOOR}};
+
+static double limit_of(int level, double best)
+{
+	return best * (1 + slack[level].relative) + slack[level].absolute;
+}
+
+double undetermined_limit(double error)
+{
+	return limit_of(SEARCH_LEVELS - 1, error);
+}
+
+/* How each level is searched; the coarsest one decides most. */
+static const struct local_how hows[SEARCH_LEVELS - 1] = {{NLOPT_LN_SBPLX, 0.7, 1e-3, 100, false, 0},
+							 {NLOPT_LN_SBPLX, 0.3, 1e-4, 40, false, 0},
+							 {NLOPT_LN_SBPLX, 0.2, 3e-5, 20, false, 0}};
+
+static enum status open_level(const struct inquiry *q, int level, struct objective *o)
+{
+	return objective_init(o, &q->levels->table[level], q->options, q->class, 1,
+			      level == SEARCH_LEVELS - 1 ? MASKING_FINE : MASKING_COARSE);
+}
+
+/* The space that a pin leaves; what it holds there, the objective has to be told. */
+static struct space pinned_space(const struct inquiry *q, const struct pin *pin)
+{
+	struct space space = q->space;
+
+	if (pin->dim >= 0)
+		space_pin(&space, pin->dim, pin->value);
+	return space;
+}
+
+static void pin_objective(struct objective *o, const struct pin *pin)
+{
+	if (pin->dim < 0)
+		objective_pin(o, pin->channel, pin->specular, pin->value);
+}
+
+static void count(void *user, const struct shape *shape, const struct linear *linear)
+{
+	struct inquiry *q = user;
+
+	(void)shape;
+	(void)linear;
+	q->evaluations++;
+}
+
+/* E at a place of a space, on the objective's table. */
+static double error_at(struct inquiry *q, struct objective *o, const struct space *space, const double x[],
+		       double tolerance, struct linear *linear)
+{
+	const struct shape shape = space_shape(space, x);
+
+	q->evaluations++;
+	return objective_eval(o, &shape, tolerance, false, linear);
+}
+
+/* Adds the place of a shape, if it is among the `most` best so far. */
+static void offer(struct inquiry *q, struct objective *o, const struct space *space, struct shape shape,
+		  struct space_point *start, int *n, int most)
+{
+	struct space_point place;
+
+	space_place(space, &shape, place.x);
+	place.error = error_at(q, o, space, place.x, 2e-3, &place.linear);
+	int at = *n < most ? (*n)++ : most;
+
+	for (; at > 0 && start[at - 1].error > place.error; at--)
+		if (at < most)
+			start[at] = start[at - 1];
+	if (at < most)
+		start[at] = place;
+}
+
+/* The value of the axis that is next to a pin's. */
+static int nearest(const struct axis *axis, double value)
+{
+	int best = 0;
+
+	for (int i = 1; i < axis->count; i++)
+		if (fabs(axis->value[i] - value) < fabs(axis->value[best] - value))
+			best = i;
+	return best;
+}
+
+enum { STARTS = 2 };
+
+/* Where a refit under a pin begins: at the optimum, and at the best that the scan has seen there. Under a pin of kd or
+ * ks, at the best of each sigma; and, since ks may be large where F is small, at the least index. */
+static int first_places(struct inquiry *q, struct objective *o, const struct space *space, const struct pin *pin,
+			struct space_point start[STARTS])
+{
+	const struct evidence *e = q->evidence;
+	int n = 0;
+
+	offer(q, o, space, q->best, start, &n, STARTS);
+	if (pin->dim >= 0) {
+		const int i = nearest(&q->space.axis[pin->dim], pin->value);
+
+		offer(q, o, space, space_shape(&q->space, e->slice[pin->dim][i].x), start, &n, STARTS);
+		return n;
+	}
+	for (int i = 0; q->space.dims > 0 && i < q->space.axis[0].count; i++)
+		offer(q, o, space, space_shape(&q->space, e->slice[0][i].x), start, &n, STARTS);
+	if (pin->specular) {
+		struct shape faint = q->best;
+
+		faint.ior = FIT_IOR_MIN;
+		offer(q, o, space, faint, start, &n, STARTS);
+	}
+	return n;
+}
+
+/* Improves a place on a level's table, on which the optimum has the error `best`, unless there is nothing to search. */
+static enum status descend(struct inquiry *q, struct objective *o, const struct space *space, int level, double best,
+			   struct space_point *place)
+{
+	struct local_how how = hows[level];
+
+	how.enough = best * (1 + FIT_UNDETERMINED / 2) + FIT_UNDETERMINED_FLOOR / 2;
+	place->error = error_at(q, o, space, place->x, 0.1 * how.tolerance, &place->linear);
+	if (space->dims == 0 || place->error <= how.enough)
+		return STATUS_OK;
+	return local_descend(space, o, &how, count, q, place, NULL);
+}
+
+/* The best start on the coarsest table, improved. */
+static enum status descend_coarse(struct inquiry *q, const struct pin *pin, const struct space *space,
+				  struct space_point *best)
+{
+	struct space_point start[STARTS];
+	struct objective o;
+	enum status status = open_level(q, 0, &o);
+
+	if (status != STATUS_OK)
+		return status;
+	pin_objective(&o, pin);
+	const int n = first_places(q, &o, space, pin, start);
+
+	best->error = INFINITY;
+	for (int i = 0; i < n && best->error > limit_of(0, q->coarse) && status == STATUS_OK; i++) {
+		status = descend(q, &o, space, 0, q->coarse, &start[i]);
+		if (start[i].error < best->error)
+			*best = start[i];
+	}
+	objective_free(&o);
+	return status;
+}
+
+/* Goes on under a pin on the table of a finer level; on the full one only to look. */
+static enum status descend_finer(struct inquiry *q, const struct pin *pin, const struct space *space, int level,
+				 struct space_point *place, bool *reached)
+{
+	const bool full = level == SEARCH_LEVELS - 1;
+	struct objective o;
+	struct linear linear;
+	enum status status = open_level(q, level, &o);
+
+	if (status != STATUS_OK)
+		return status;
+	const double best = full ? q->error : objective_eval(&o, &q->best, 1e-5, false, &linear);
+
+	pin_objective(&o, pin);
+	if (full)
+		place->error = error_at(q, &o, space, place->x, 1e-7, &linear);
+	else
+		status = descend(q, &o, space, level, best, place);
+	*reached = place->error <= limit_of(level, best);
+	objective_free(&o);
+	return status;
+}
+
+/* Whether E is in reach under a pin, the other parameters refitted. */
+static enum status reaches(struct inquiry *q, const struct pin *pin, bool *reached)
+{
+	const struct space space = pinned_space(q, pin);
+	struct space_point place = {.error = INFINITY};
+	enum status status = descend_coarse(q, pin, &space, &place);
+
+	*reached = place.error <= limit_of(0, q->coarse);
+	for (int level = 1; level < SEARCH_LEVELS && *reached && status == STATUS_OK; level++)
+		status = descend_finer(q, pin, &space, level, &place, reached);
+	return status;
+}
+
+/* Whether E is in reach at all the values of a parameter. */
+static enum status reaches_all(struct inquiry *q, struct pin pin, const double value[], int n, bool *reached)
+{
+	const atomic_bool *cancel = q->options->cancel;
+	enum status status = STATUS_OK;
+
+	*reached = true;
+	for (int i = 0; i < n && *reached && status == STATUS_OK; i++) {
+		pin.value = value[i];
+		status = reaches(q, &pin, reached);
+		if (cancel && atomic_load_explicit(cancel, memory_order_relaxed))
+			status = STATUS_INTERRUPTED;
+	}
+	return status;
+}
+
+/* The values of dimension d to try: where the scan was worst first, then the ends of the range and the rest of the axis. */
+static int values_of(const struct inquiry *q, int d, double value[])
+{
+	const struct axis *axis = &q->space.axis[d];
+	const struct space_point *slice = q->evidence->slice[d];
+	int worst = 0, n = 0;
+
+	for (int i = 1; i < axis->count; i++)
+		if (slice[i].error > slice[worst].error)
+			worst = i;
+	value[n++] = axis->value[worst];
+	value[n++] = q->space.lowest[d];
+	value[n++] = q->space.highest[d];
+	for (int i = 0; i < axis->count; i++)
+		if (i != worst)
+			value[n++] = axis->value[i];
+	return n;
+}
+
+static enum status shape_parameter(struct inquiry *q, int d, bool *undetermined)
+{
+	double value[SPACE_VALUES + 2];
+	const int n = values_of(q, d, value);
+
+	return reaches_all(q, (struct pin){.dim = d}, value, n, undetermined);
+}
+
+/* Whether E is in reach at both ends of a factor with the shape as it is. It is convex in kd and ks: then it is in reach
+ * all the way. */
+static enum status reaches_both_ends(struct inquiry *q, int channel, bool specular, bool *reached)
+{
+	struct objective o;
+	struct linear linear;
+	const enum status status = open_level(q, SEARCH_LEVELS - 1, &o);
+
+	*reached = status == STATUS_OK;
+	for (int end = 0; end < 2 && *reached; end++) {
+		objective_pin(&o, channel, specular, (int)specular == end ? objective_most(q->options, specular) : 0);
+		*reached = objective_eval(&o, &q->best, 1e-7, false, &linear) <= limit_of(SEARCH_LEVELS - 1, q->error);
+		q->evaluations++;
+	}
+	if (status == STATUS_OK)
+		objective_free(&o);
+	return status;
+}
+
+static enum status factor(struct inquiry *q, int channel, bool specular, bool *undetermined)
+{
+	/* Of the upper end; first the one of which `rise` tells. */
+	enum { SHARES = 8 };
+	static const double share[2][SHARES] = {{1, 0, 0.6, 0.3, 0.1, 1e-2, 1e-3, 1e-4},
+						{0, 1, 0.6, 0.3, 0.1, 1e-2, 1e-3, 1e-4}};
+	const double most = objective_most(q->options, specular);
+	double value[SHARES];
+
+	*undetermined = false;
+	if (q->coarse + q->rise[specular][channel] > limit_of(0, q->coarse))
+		return STATUS_OK;
+	enum status status = STATUS_OK;
+
+	/* Where that is likely it saves the refits. */
+	if (q->coarse + q->rise_of_best[specular][channel] <= limit_of(1, q->coarse))
+		status = reaches_both_ends(q, channel, specular, undetermined);
+	if (status != STATUS_OK || *undetermined)
+		return status;
+	for (int n = 0; n < SHARES; n++)
+		value[n] = most * share[specular][n];
+	return reaches_all(q, (struct pin){.dim = -1, .channel = channel, .specular = specular}, value, SHARES,
+			   undetermined);
+}
+
+static unsigned bit_of(enum coordinate c)
+{
+	static const unsigned bit[] = {[COORDINATE_SIGMA] = BOUND_SIGMA,
+				       [COORDINATE_GAMMA] = BOUND_GAMMA,
+				       [COORDINATE_IOR] = BOUND_IOR,
+				       [COORDINATE_K] = BOUND_K};
+
+	return bit[c];
+}
+
+static unsigned bits_of_factor(const struct fit_options *options, int channel, bool specular)
+{
+	const unsigned first = specular ? BOUND_KS_R : BOUND_KD_R;
+
+	return options->gray ? first | first << 1 | first << 2 : first << channel;
+}
+
+/* Notes by how much each channel's error rises at one shape, whose own E may be refitted to `above` that of the optimum:
+ * there no refit brings the sum of both below its least over all shapes. */
+static void note_rise(struct inquiry *q, struct objective *o, const struct shape *shape, double above,
+		      const struct linear *lambert)
+{
+	struct linear free, white;
+
+	objective_unpin(o);
+	objective_eval(o, shape, 1e-4, false, &free);
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		objective_pin(o, c, false, objective_most(q->options, false));
+	objective_eval(o, shape, 1e-4, false, &white);
+	q->evaluations += 2;
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		q->rise[0][c] = fmin(q->rise[0][c], above + white.channel[c] - free.channel[c]);
+		q->rise[1][c] = fmin(q->rise[1][c], above + lambert->channel[c] - free.channel[c]);
+	}
+}
+
+/* What the coarsest table tells before any refit. */
+static enum status look_at_coarse(struct inquiry *q)
+{
+	const int n = q->space.dims > 0 ? q->space.axis[0].count : 0;
+	const struct space_point *slice = q->evidence->slice[0];
+	struct objective o;
+	struct linear linear;
+	enum status status = open_level(q, 0, &o);
+
+	if (status != STATUS_OK)
+		return status;
+	q->coarse = objective_eval(&o, &q->best, 1e-5, false, &linear);
+	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+		objective_pin(&o, c, true, 0);
+		q->rise[0][c] = q->rise[1][c] = INFINITY;
+	}
+	q->lambert = objective_eval(&o, &q->best, 1e-5, false, &linear);
+	q->evaluations += 2;
+	note_rise(q, &o, &q->best, 0, &linear);
+	memcpy(q->rise_of_best, q->rise, sizeof q->rise);
+	for (int i = 0; i < n; i++) {
+		/* A fifth is what the scan may be above the bottom of its valley. */
+		const double above = fmax(slice[i].error / 1.2 - q->coarse, 0);
+		const struct shape shape = space_shape(&q->space, slice[i].x);
+
+		if (q->coarse + above <= limit_of(0, q->coarse))
+			note_rise(q, &o, &shape, above, &linear);
+	}
+	objective_free(&o);
+	return STATUS_OK;
+}
+
+/* Whether no specular term at all is as good: then any shape is. */
+static enum status can_do_without_lobe(struct inquiry *q, bool *can)
+{
+	struct objective o;
+	struct linear linear;
+	enum status status = open_level(q, SEARCH_LEVELS - 1, &o);
+
+	if (status != STATUS_OK)
+		return status;
+	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		objective_pin(&o, c, true, 0);
+	*can = objective_eval(&o, &q->best, 1e-7, false, &linear) <= limit_of(SEARCH_LEVELS - 1, q->error);
+	objective_free(&o);
+	return status;
+}
+
+/* A free parameter of the model: dimension n of the space, or a factor behind them. */
+static enum status ask(struct inquiry *q, int n, unsigned determined, bool any_shape, unsigned *bits)
+{
+	const struct fit_options *options = q->options;
+	bool undetermined = any_shape;
+	enum status status = STATUS_OK;
+
+	*bits = 0;
+	if (n < q->space.dims) {
+		if (!any_shape && !(bit_of(q->space.coordinate[n]) & determined))
+			status = shape_parameter(q, n, &undetermined);
+		*bits = undetermined ? bit_of(q->space.coordinate[n]) : 0;
+		return status;
+	}
+	const int channel = (n - q->space.dims) / 2;
+	const bool specular = (n - q->space.dims) % 2;
+
+	if ((options->gray && channel > 0) || !(specular ? options->specular : options->diffuse))
+		return STATUS_OK;
+	status = factor(q, channel, specular, &undetermined);
+	*bits = undetermined ? bits_of_factor(options, channel, specular) : 0;
+	return status;
+}
+
+/* Where D is free there is no shape to be refitted. */
+static enum status find_of_table(struct inquiry *q, unsigned *undetermined)
+{
+	const bool free_ior = q->options->fresnel != FRESNEL_NONE && isnan(q->options->ior);
+	bool any = false;
+
+	q->class = ndf_find("ggx");
+	q->best = (struct shape){1, 2, 1.5, 0};
+	const enum status status = can_do_without_lobe(q, &any);
+
+	*undetermined = any && free_ior ? BOUND_IOR : 0;
+	*undetermined |= any && q->options->fresnel == FRESNEL_CONDUCTOR ? BOUND_K : 0;
+	return status;
+}
+
+enum status undetermined_find(const struct levels *levels, const struct fit_options *options,
+			      const struct ndf_class *class, const struct evidence *evidence, const struct shape *best,
+			      double error, unsigned determined, unsigned *undetermined, long *evaluations)
+{
+	struct inquiry q = {.levels = levels, .options = options, .class = class, .evidence = evidence, .best = *best};
+	bool any_shape = false;
+	unsigned all = 0;
+
+	q.error = error;
+	if (ndf_is_tabulated(class))
+		return find_of_table(&q, undetermined);
+	space_init(&q.space, options, class);
+	enum status status = look_at_coarse(&q);
+
+	if (status == STATUS_OK && options->specular && q.lambert <= limit_of(0, q.coarse))
+		status = can_do_without_lobe(&q, &any_shape);
+	const int n_questions = status == STATUS_OK ? q.space.dims + 2 * SAMPLES_CHANNELS : 0;
+
+#pragma omp parallel for num_threads(options->threads) schedule(dynamic) reduction(| : all) if (options->threads > 1)
+	for (int n = 0; n < n_questions; n++) {
+		unsigned bits = 0;
+		const enum status mine = ask(&q, n, determined, any_shape, &bits);
+
+		all |= bits;
+		if (mine != STATUS_OK)
+#pragma omp critical
+			status = mine;
+	}
+	*undetermined = all;
+	*evaluations += q.evaluations;
+	return status;
+}

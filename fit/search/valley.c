@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/search/valley.h"
+#include <math.h>
+
+struct walk {
+	const struct space *space;
+	struct objective *objective;
+	local_note *note;
+	void *user;
+	int d; /* the dimension that moves */
+};
+
+/* The best of the other parameters with that of dimension d at `value`, sought from a place near by. */
+static enum status refit(const struct walk *w, const struct space_point *from, double value, struct space_point *to)
+{
+	static const struct local_how how = {NLOPT_LN_SBPLX, 0.02, 1e-4, 100, false, 0};
+	const struct shape near = space_shape(w->space, from->x);
+	struct space others = *w->space;
+	struct space_point place = *from;
+
+	space_pin(&others, w->d, value);
+	space_place(&others, &near, place.x);
+	const enum status status = local_descend(&others, w->objective, &how, w->note, w->user, &place, NULL);
+	const struct shape shape = space_shape(&others, place.x);
+
+	*to = place;
+	space_place(w->space, &shape, to->x);
+	return status;
+}
+
+/* Steps are in ln(value - least): longer ones after a gain, shorter ones back after none. */
+static enum status follow(const struct walk *w, double least, struct space_point *place)
+{
+	const struct space *s = w->space;
+	const atomic_bool *cancel = w->objective->options->cancel;
+	enum status status = STATUS_OK;
+	int steps = 0;
+
+	for (double step = 0.1; fabs(step) > 1e-5 && steps < 60 && status == STATUS_OK; steps++) {
+		const double value = least + (space_value(s, w->d, place->x[w->d]) - least) * exp(step);
+		struct space_point next;
+
+		if (cancel && atomic_load_explicit(cancel, memory_order_relaxed))
+			break;
+		status = refit(w, place, fmin(fmax(value, s->lowest[w->d]), s->highest[w->d]), &next);
+		if (status == STATUS_OK && next.error < place->error) {
+			*place = next;
+			step *= 2;
+		} else {
+			step *= -0.4;
+		}
+	}
+	return status;
+}
+
+enum status valley_follow(const struct space *space, struct objective *o, local_note *note, void *user,
+			  struct space_point *place)
+{
+	const struct shape shape = space_shape(space, place->x);
+	enum status status = STATUS_OK;
+
+	place->error = objective_eval(o, &shape, 1e-5, false, &place->linear);
+	note(user, &shape, &place->linear);
+	for (int d = 0; d < space->dims && space->dims > 1 && status == STATUS_OK; d++) {
+		const struct walk walk = {space, o, note, user, d};
+
+		if (space->coordinate[d] == COORDINATE_GAMMA)
+			status = follow(&walk, space->least_gamma, place);
+		else if (space->coordinate[d] == COORDINATE_IOR)
+			status = follow(&walk, 1, place);
+	}
+	return status;
+}

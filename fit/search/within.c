@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/search/within.h"
+
+/* A variant: the terms it has. Bits of what makes a model richer, so that one variant lies inside another if its bits
+ * do. */
+enum term {
+	TERM_DIFFUSE = 1 << 0,
+	TERM_SPECULAR = 1 << 1,
+	TERM_COLOUR = 1 << 2,
+	TERM_FRESNEL = 1 << 3,
+	TERMS = 1 << 4
+};
+
+struct variant {
+	unsigned terms;
+	int ndf; /* index into the options' list */
+};
+
+static unsigned all_terms(const struct fit_options *options)
+{
+	const bool fresnel = options->specular && options->fresnel != FRESNEL_NONE;
+	return (options->diffuse ? TERM_DIFFUSE : 0u) | (options->specular ? TERM_SPECULAR : 0u) |
+	       (options->gray ? 0u : TERM_COLOUR) | (fresnel ? TERM_FRESNEL : 0u);
+}
+
+/* The shape's free parameters that an NDF has besides sigma. */
+static bool has_free_gamma(const struct fit_options *options, int ndf)
+{
+	return ndf_has_gamma(options->ndf[ndf]) && isnan(options->gamma);
+}
+
+static bool is_variant(const struct fit_options *options, struct variant v)
+{
+	const unsigned all = all_terms(options);
+	const bool specular = v.terms & TERM_SPECULAR;
+	return !(v.terms & ~all) && v.terms & (TERM_DIFFUSE | TERM_SPECULAR) &&
+	       /* Without a specular term there is nothing to tell NDFs or Fresnel terms apart. */
+	       (specular || (v.ndf == 0 && !(v.terms & TERM_FRESNEL)));
+}
+
+static int parameters(const struct fit_options *options, struct variant v)
+{
+	const int channels = v.terms & TERM_COLOUR ? 3 : 1;
+	int n = v.terms & TERM_DIFFUSE ? channels : 0;
+	if (!(v.terms & TERM_SPECULAR))
+		return n;
+	n += channels + (isnan(options->sigma) ? 1 : 0) + (has_free_gamma(options, v.ndf) ? 1 : 0);
+	if (v.terms & TERM_FRESNEL)
+		n += (isnan(options->ior) ? 1 : 0) + (options->fresnel == FRESNEL_CONDUCTOR ? 1 : 0);
+	return n;
+}
+
+/* Whether each model of `inner` is one of `outer`. Fresnel's term goes to a constant as the index grows. */
+static bool is_inside(const struct fit_options *options, struct variant inner, struct variant outer)
+{
+	if (inner.terms & ~outer.terms)
+		return false;
+	return !(inner.terms & TERM_SPECULAR) || inner.ndf == outer.ndf || has_free_gamma(options, outer.ndf);
+}
+
+/* Order of trial: fewest parameters first, then the terms that stay. */
+static bool is_before(const struct fit_options *options, struct variant a, struct variant b)
+{
+	const int n_a = parameters(options, a), n_b = parameters(options, b);
+	if (n_a != n_b)
+		return n_a < n_b;
+	return a.terms != b.terms ? a.terms > b.terms : a.ndf < b.ndf;
+}
+
+enum { VARIANTS_MAX = TERMS * FIT_NDFS_MAX };
+
+struct variants {
+	struct variant v[VARIANTS_MAX];
+	int n;
+};
+
+static struct variants list_variants(const struct fit_options *options)
+{
+	struct variants list = {.n = 0};
+	for (unsigned terms = 0; terms < TERMS; terms++) {
+		for (int ndf = 0; ndf < options->n_ndf; ndf++) {
+			const struct variant v = {terms, ndf};
+			if (!is_variant(options, v))
+				continue;
+			int at = list.n++;
+			for (; at > 0 && is_before(options, v, list.v[at - 1]); at--)
+				list.v[at] = list.v[at - 1];
+			list.v[at] = v;
+		}
+	}
+	return list;
+}
+
+static struct fit_options variant_options(const struct fit_options *options, struct variant v)
+{
+	struct fit_options o = *options;
+	o.ndf[0] = options->ndf[v.ndf];
+	o.n_ndf = 1;
+	o.diffuse = v.terms & TERM_DIFFUSE;
+	o.specular = v.terms & TERM_SPECULAR;
+	o.gray = !(v.terms & TERM_COLOUR);
+	if (o.specular && !(v.terms & TERM_FRESNEL))
+		o.fresnel = FRESNEL_NONE;
+	return o;
+}
+
+/* Drops what lies inside a variant that was not good enough. */
+static void drop_inside(const struct fit_options *options, struct variants *list, struct variant failed)
+{
+	int kept = 0;
+	for (int i = 0; i < list->n; i++)
+		if (!is_inside(options, list->v[i], failed))
+			list->v[kept++] = list->v[i];
+	list->n = kept;
+}
+
+struct selection {
+	const struct fit_context *context;
+	const struct samples *samples;
+	const struct fit_options *options;
+	double limit;
+	struct fit_options *chosen;
+	struct fit_result *result;
+	struct variants list; /* those that may still be chosen: untried and simpler than *chosen */
+};
+
+static enum status try_variant(struct selection *s, int i, struct error *error)
+{
+	const struct variant v = s->list.v[i];
+	const struct fit_options o = variant_options(s->options, v);
+	struct fit_result result;
+	const enum status status = fit_run(s->context, s->samples, &o, &result, error);
+	if (status)
+		return status;
+	if (result.error <= s->limit) {
+		*s->chosen = o;
+		*s->result = result;
+		s->list.n = i;
+	} else {
+		drop_inside(s->options, &s->list, v);
+	}
+	return STATUS_OK;
+}
+
+/* The place of a variant in the list; -1 if it is not there. */
+static int find_variant(const struct variants *list, unsigned terms, int ndf)
+{
+	for (int i = 0; i < list->n; i++)
+		if (list->v[i].terms == terms && list->v[i].ndf == ndf)
+			return i;
+	return -1;
+}
+
+/* Takes the whole model's results: the best one sets the limit, each of them is a variant tried. Returns the NDF that
+ * holds the others, if there is one. */
+static int take_whole(struct selection *s, const struct fit_result *whole, double percent)
+{
+	int best = 0, richest = 0;
+	for (int i = 0; i < s->options->n_ndf; i++) {
+		if (whole[i].error < whole[best].error)
+			best = i;
+		if (has_free_gamma(s->options, i))
+			richest = i;
+	}
+	s->limit = whole[best].error * (1 + percent / 100);
+	*s->chosen = variant_options(s->options, (struct variant){all_terms(s->options), best});
+	*s->result = whole[best];
+	for (int i = 0; i < s->options->n_ndf; i++) {
+		const struct variant v = {all_terms(s->options), i};
+		const int place = find_variant(&s->list, v.terms, i);
+		if (place < 0)
+			continue;
+		if (whole[i].error > s->limit) {
+			drop_inside(s->options, &s->list, v);
+			continue;
+		}
+		*s->chosen = variant_options(s->options, v);
+		*s->result = whole[i];
+		s->list.n = place;
+	}
+	return richest;
+}
+
+/* Whether Lambert alone will do, found out before anything else is fitted in full: against an estimate of the best error,
+ * of which the samples may be wrong by a few thousandths. Then it is the choice. */
+static enum status try_lambert(struct selection *s, double percent, bool *chosen, struct error *error)
+{
+	double best;
+	enum status status = fit_estimate(s->context, s->samples, s->options, &best);
+	*chosen = false;
+	if (status)
+		return error_set(error, status, "%s", status_str(status));
+	if (isinf(best))
+		return STATUS_OK;
+	s->limit = best * (1 + percent / 100) * 0.997;
+	for (int i = 0; i < s->list.n && !*chosen && !status; i++) {
+		const struct variant v = s->list.v[i];
+		if (v.terms & TERM_SPECULAR)
+			continue;
+		const struct fit_options o = variant_options(s->options, v);
+		status = fit_run(s->context, s->samples, &o, s->result, error);
+		*chosen = !status && s->result->error <= s->limit;
+		if (*chosen)
+			*s->chosen = o;
+	}
+	return status;
+}
+
+enum status within_run(const struct fit_context *context, const struct samples *samples,
+		       const struct fit_options *options, double percent, struct fit_options *chosen,
+		       struct fit_result *result, struct error *error)
+{
+	struct fit_result whole[FIT_NDFS_MAX];
+	struct selection s = {.context = context,
+			      .samples = samples,
+			      .options = options,
+			      .chosen = chosen,
+			      .result = result,
+			      .list = list_variants(options)};
+	bool lambert = false;
+	enum status status = options->specular ? try_lambert(&s, percent, &lambert, error) : STATUS_OK;
+	if (status || lambert)
+		return status;
+	status = fit_run(context, samples, options, whole, error);
+	if (status)
+		return status;
+	const int richest = take_whole(&s, whole, percent);
+	const unsigned all = all_terms(options);
+	/* First the whole model less one term: where that fails, it spares all variants inside. Then the simplest. */
+	for (unsigned term = 1; term < TERMS && !status; term <<= 1) {
+		const int i = (term & all) ? find_variant(&s.list, all & ~term, richest) : -1;
+		if (i >= 0)
+			status = try_variant(&s, i, error);
+	}
+	while (s.list.n > 0 && !status)
+		status = try_variant(&s, 0, error);
+	return status;
+}

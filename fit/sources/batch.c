@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/sources/batch.h"
+#include "data_readers/merl.h"
+#include "data_readers/text_quote.h"
+#include "fit/cli/report.h"
+#include "fit/search/within.h"
+
+#include <fcntl.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum {
+	TICK_MS = 150, /* how often the progress line is drawn and Ctrl-C looked for, while nothing else happens */
+	CONTEXTS = 2,  /* 180 and 360 entries along phi_d */
+	CONTEXT_PHI = 180,
+};
+
+/* What the threads of a run share. */
+struct run {
+	const struct batch *batch;
+	int threads_per_fit;
+	pthread_mutex_t lock;         /* of all below */
+	pthread_cond_t ended;         /* a file or a thread did */
+	size_t next;                  /* the file to take next */
+	size_t *finished, n_finished; /* files in the order in which they ended */
+	int running;                  /* threads */
+	struct fit_context *context[CONTEXTS];
+};
+
+enum status batch_init(struct batch *batch, const struct options *options, const struct files *files)
+{
+	char *text = options_text(options);
+	*batch = (struct batch){.options = options, .options_text = text, .n = files->n};
+	batch->file = calloc(files->n + 1, sizeof(*batch->file));
+	if (!batch->file || !text) {
+		report_error("out of memory");
+		batch_free(batch);
+		return STATUS_NO_MEMORY;
+	}
+	for (size_t i = 0; i < files->n; i++) {
+		batch->file[i].path = files->path[i];
+		batch->file[i].rows = csv_table_make(result_columns, RESULT_COLUMNS);
+	}
+	return STATUS_OK;
+}
+
+void batch_free(struct batch *batch)
+{
+	for (size_t i = 0; batch->file && i < batch->n; i++) {
+		csv_table_free(&batch->file[i].rows);
+		trace_free(&batch->file[i].trace);
+	}
+	free(batch->file);
+	free((char *)batch->options_text);
+	*batch = (struct batch){0};
+}
+
+struct result_source batch_source(const struct batch *batch, const struct batch_file *file)
+{
+	return (struct result_source){file->path, file->unread ? NULL : file->input, batch->options_text};
+}
+
+/* The geometry for this kind of table, made by whoever needs it first. */
+static enum status get_context(struct run *run, int n_phi_d, const struct fit_context **context)
+{
+	struct fit_context **slot = &run->context[n_phi_d != CONTEXT_PHI];
+	enum status status = STATUS_OK;
+	pthread_mutex_lock(&run->lock);
+	if (!*slot)
+		status = fit_context_new(slot, n_phi_d, &run->batch->options->fit);
+	*context = *slot;
+	pthread_mutex_unlock(&run->lock);
+	return status;
+}
+
+/* Leaves only the NDFs for which the store has no row. With --within it has a row of one of them. */
+static void drop_known(const struct batch *batch, const struct result_source *source, struct fit_options *fit)
+{
+	const bool within = !isnan(batch->options->within);
+	int kept = 0;
+	for (int i = 0; i < fit->n_ndf; i++)
+		if (!store_has(batch->store, source, within ? NULL : ndf_name(fit->ndf[i])))
+			fit->ndf[kept++] = fit->ndf[i];
+	fit->n_ndf = kept;
+}
+
+static enum status fit_samples(struct run *run, struct batch_file *file, const struct samples *samples,
+			       struct fit_options *fit)
+{
+	const struct options *options = run->batch->options;
+	const struct result_source source = batch_source(run->batch, file);
+	const struct fit_context *context;
+	struct fit_result result[FIT_NDFS_MAX];
+	enum status status = get_context(run, samples->n_phi_d, &context);
+	if (status)
+		return error_set(&file->error, status, "%s", status_str(status));
+	if (!isnan(options->within))
+		status = within_run(context, samples, fit, options->within, fit, result, &file->error);
+	else
+		status = fit_run(context, samples, fit, result, &file->error);
+	if (status)
+		return status;
+	for (int i = 0; i < fit->n_ndf; i++) {
+		if (!status && result_add(&file->rows, &source, fit, &result[i]))
+			status = error_set(&file->error, STATUS_NO_MEMORY, "out of memory");
+		fit_result_free(&result[i]);
+	}
+	return status;
+}
+
+/* Reads and fits one file. Returns STATUS_INTERRUPTED or, with everything in *file, STATUS_OK. */
+static enum status process(struct run *run, struct batch_file *file)
+{
+	struct fit_options fit = run->batch->options->fit;
+	struct samples samples;
+	fit.threads = run->threads_per_fit;
+	if (run->batch->options->trace) {
+		fit.trace = trace_note;
+		fit.trace_data = &file->trace;
+	}
+	enum status status = merl_read(file->path, fit.threads, &samples, &file->error);
+	file->unread = status == STATUS_IO || status == STATUS_NO_MEMORY;
+	if (!status) {
+		result_input(file->input, &samples);
+		const struct result_source source = batch_source(run->batch, file);
+		if (run->batch->store)
+			drop_known(run->batch, &source, &fit);
+		if (fit.n_ndf > 0)
+			status = fit_samples(run, file, &samples, &fit);
+		samples_free(&samples);
+		if (status && status != STATUS_INTERRUPTED) {
+			char name[TEXT_QUOTE_SIZE];
+			const struct error why = file->error;
+			text_quote(file->path, name, sizeof name);
+			error_set(&file->error, status, "cannot fit '%s': %.200s", name, why.text);
+		}
+	}
+	if (status == STATUS_INTERRUPTED)
+		return status;
+	file->failed = status != STATUS_OK;
+	if (file->failed) {
+		const struct result_source source = batch_source(run->batch, file);
+		csv_table_free(&file->rows);
+		/* A disk that is away for a while undoes no fit. */
+		if (file->unread && run->batch->store)
+			drop_known(run->batch, &source, &fit);
+		if (result_add_failure(&file->rows, &source, &fit, file->error.text))
+			csv_table_free(&file->rows); /* no room for a row; the message is there still */
+	}
+	return STATUS_OK;
+}
+
+/* Has the system read the file that comes next while this one is fitted. */
+static void read_ahead(const char *path)
+{
+	const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+	if (fd < 0)
+		return;
+	posix_fadvise(fd, 0, 0, POSIX_FADV_WILLNEED);
+	close(fd);
+}
+
+static void *work(void *argument)
+{
+	struct run *run = argument;
+	const struct batch *batch = run->batch;
+	pthread_mutex_lock(&run->lock);
+	while (run->next < batch->n && !*batch->options->cancel) {
+		const size_t i = run->next++;
+		const char *upcoming = run->next < batch->n ? batch->file[run->next].path : NULL;
+		pthread_mutex_unlock(&run->lock);
+		if (upcoming)
+			read_ahead(upcoming);
+		const enum status status = process(run, &batch->file[i]);
+		pthread_mutex_lock(&run->lock);
+		if (!status)
+			run->finished[run->n_finished++] = i;
+		pthread_cond_signal(&run->ended);
+	}
+	run->running--;
+	pthread_cond_signal(&run->ended);
+	pthread_mutex_unlock(&run->lock);
+	return NULL;
+}
+
+static void wait_a_tick(struct run *run)
+{
+	struct timespec until;
+	clock_gettime(CLOCK_REALTIME, &until);
+	until.tv_nsec += TICK_MS * 1000000L;
+	until.tv_sec += until.tv_nsec / 1000000000L;
+	until.tv_nsec %= 1000000000L;
+	pthread_cond_timedwait(&run->ended, &run->lock, &until);
+}
+
+/* Hands on what is done until all threads have ended. Returns whether done() stopped the run. */
+static bool hand_on(struct run *run, size_t *n_failed)
+{
+	const struct batch *batch = run->batch;
+	struct progress progress = progress_start(batch->n, "files", batch->options->quiet);
+	bool stopped = false;
+	size_t next = 0;
+	pthread_mutex_lock(&run->lock);
+	while (run->running > 0 || next < run->n_finished) {
+		if (next == run->n_finished) {
+			wait_a_tick(run);
+			progress_draw(&progress);
+			continue;
+		}
+		struct batch_file *file = &batch->file[run->finished[next++]];
+		pthread_mutex_unlock(&run->lock);
+		progress_erase(&progress);
+		progress.done = next;
+		file->done = true;
+		*n_failed += file->failed;
+		if (file->failed)
+			report_error("%s", file->error.text);
+		if (!stopped && batch->done && !batch->done(batch->user, file)) {
+			stopped = true;
+			*batch->options->cancel = true;
+		}
+		pthread_mutex_lock(&run->lock);
+	}
+	pthread_mutex_unlock(&run->lock);
+	progress_erase(&progress);
+	if (progress.shown)
+		fprintf(stderr, "%zu of %zu files in %.1f s, %zu failed\n", next, batch->n,
+			search_clock() - progress.start, *n_failed);
+	return stopped;
+}
+
+/* Starts up to n threads; returns how many there are. */
+static int start_threads(struct run *run, pthread_t *thread, int n)
+{
+	int started = 0;
+	pthread_mutex_lock(&run->lock);
+	while (started < n && !pthread_create(&thread[started], NULL, work, run))
+		started++;
+	run->running = started;
+	pthread_mutex_unlock(&run->lock);
+	return started;
+}
+
+int batch_run(struct batch *batch)
+{
+	const int threads = batch->options->fit.threads > 0 ? batch->options->fit.threads : 1;
+	const int n_workers = batch->n < (size_t)threads ? (int)batch->n : threads;
+	struct run run = {.batch = batch,
+			  .threads_per_fit = batch->n > 1 ? 1 : threads,
+			  .lock = PTHREAD_MUTEX_INITIALIZER,
+			  .ended = PTHREAD_COND_INITIALIZER};
+	pthread_t *thread = calloc((size_t)n_workers + 1, sizeof(*thread));
+	run.finished = calloc(batch->n + 1, sizeof(*run.finished));
+	size_t n_failed = 0;
+	bool stopped = batch->n > 0;
+	const int started = thread && run.finished ? start_threads(&run, thread, n_workers) : 0;
+	if (started)
+		stopped = hand_on(&run, &n_failed);
+	else if (batch->n)
+		report_error("cannot start a thread");
+	for (int i = 0; i < started; i++)
+		pthread_join(thread[i], NULL);
+	for (int i = 0; i < CONTEXTS; i++)
+		fit_context_free(run.context[i]);
+	free(run.finished);
+	free(thread);
+	if (!stopped && *batch->options->cancel)
+		return EXIT_INTERRUPTED;
+	return stopped || n_failed ? EXIT_FAILED : EXIT_DONE;
+}

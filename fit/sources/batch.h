@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* batch - fits many files: one per thread, the next one's bytes on their way from the disk meanwhile. */
+#ifndef BATCH_H
+#define BATCH_H
+
+#include "fit/cli/files.h"
+#include "fit/cli/options.h"
+#include "fit/results/store.h"
+#include "fit/results/trace.h"
+
+/* struct batch_file - one file and what came of it. */
+struct batch_file {
+	const char *path;
+	char input[RESULT_INPUT_SIZE]; /* "" until it is read */
+	bool unread;                   /* it could not be read at all: what bytes it has is not known */
+	struct csv_table rows;         /* new rows: none for NDFs that the store has, a failure's row per NDF */
+	struct trace trace;            /* if the options want one */
+	bool done;                     /* false: not begun, or interrupted */
+	bool failed;
+	struct error error; /* why it failed */
+};
+
+struct batch {
+	const struct options *options;
+	const char *options_text;  /* as in the rows */
+	const struct store *store; /* rows that need not be made again; may be NULL */
+	struct batch_file *file;
+	size_t n;
+	/* Called in the thread of batch_run, once per file that is done, in the order in which they end; false stops
+	 * all. */
+	bool (*done)(void *user, struct batch_file *file);
+	void *user;
+};
+
+/* batch_init - prepares the files of a command; batch_free releases them and their rows. STATUS_NO_MEMORY,
+ * told on standard error. */
+MUST_CHECK enum status batch_init(struct batch *batch, const struct options *options, const struct files *files);
+void batch_free(struct batch *batch);
+
+/* batch_run - fits every file. A file that fails is told on standard error. Returns the exit code: EXIT_DONE,
+ * EXIT_FAILED (a file failed, done() returned false, no thread could be started), EXIT_INTERRUPTED. */
+int batch_run(struct batch *batch);
+
+/* batch_source - what the rows of a file say of it. */
+struct result_source batch_source(const struct batch *batch, const struct batch_file *file);
+
+#endif

@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/sources/materials.h"
+#include "data_readers/merl.h"
+#include "data_readers/text_quote.h"
+#include "fit/cli/files.h"
+#include "fit/cli/output_directory.h"
+#include "fit/results/store.h"
+#include "fit/sources/batch.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Materials from rows */
+
+static int text_order(char *const *a, char *const *b, enum result_column column)
+{
+	return strcmp(a[column], b[column]);
+}
+
+static int material_order(char *const *a, char *const *b)
+{
+	int order = text_order(a, b, RESULT_MATERIAL);
+	if (!order)
+		order = text_order(a, b, RESULT_PATH);
+	return order ? order : text_order(a, b, RESULT_OPTIONS);
+}
+
+/* A row and where it stood, so that the NDFs of a material keep their order. */
+struct place {
+	char **row;
+	size_t index;
+};
+
+static int place_order(const void *a, const void *b)
+{
+	const struct place *x = a, *y = b;
+	const int order = material_order(x->row, y->row);
+	return order ? order : (x->index > y->index) - (x->index < y->index);
+}
+
+static enum status sort_rows(struct csv_table *rows)
+{
+	struct place *place = calloc(rows->n_rows + 1, sizeof(*place));
+	if (!place)
+		return STATUS_NO_MEMORY;
+	for (size_t i = 0; i < rows->n_rows; i++)
+		place[i] = (struct place){rows->row[i], i};
+	qsort(place, rows->n_rows, sizeof(*place), place_order);
+	for (size_t i = 0; i < rows->n_rows; i++)
+		rows->row[i] = place[i].row;
+	free(place);
+	return STATUS_OK;
+}
+
+/* A character of a name, or what stands for it in the name of a file. */
+static char plain(char c, bool first)
+{
+	const bool letter = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+	const bool mark = !first && (c == '.' || c == '+' || c == '-');
+	if (letter || mark)
+		return c;
+	return '_';
+}
+
+/* Names that differ in what a file name cannot have, or only in case, are told apart by a number. */
+static void name_files(struct materials *materials)
+{
+	enum { NUMBER_ROOM = 24 };
+	for (size_t i = 0; i < materials->n; i++) {
+		struct material *m = &materials->material[i];
+		size_t length = 0;
+		for (const char *c = m->name; *c && length < MATERIAL_FILE_NAME_SIZE - NUMBER_ROOM; c++, length++)
+			m->file_name[length] = plain(*c, length == 0);
+		if (length == 0)
+			m->file_name[length++] = '_';
+		for (size_t k = 0, number = 1; k < i; k++) {
+			if (strcasecmp(m->file_name, materials->material[k].file_name))
+				continue;
+			snprintf(m->file_name + length, NUMBER_ROOM, "-%zu", ++number);
+			k = (size_t)-1; /* the new name may be taken as well */
+		}
+	}
+}
+
+static enum status group_rows(struct materials *materials)
+{
+	const struct csv_table *rows = &materials->rows;
+	materials->n = 0;
+	materials->material = calloc(rows->n_rows + 1, sizeof(*materials->material));
+	if (!materials->material)
+		return STATUS_NO_MEMORY;
+	for (size_t i = 0; i < rows->n_rows; i++) {
+		if (i == 0 || material_order(rows->row[i - 1], rows->row[i])) {
+			struct material *m = &materials->material[materials->n++];
+			m->name = rows->row[i][RESULT_MATERIAL];
+			m->row = &rows->row[i];
+		}
+		materials->material[materials->n - 1].n_rows++;
+	}
+	name_files(materials);
+	return STATUS_OK;
+}
+
+/* Where rows come from */
+
+static int read_rows(struct csv_table *rows, const struct options *options)
+{
+	static const char *const useful[] = {"output",   "quiet", "threads", "environment", "light",
+					     "exposure", "size",  "samples", NULL};
+	const char *ignored = options_given_beside(options, useful);
+	struct error error;
+	if (ignored)
+		return options_usage(options->command, "--%s means nothing for a table that is there already", ignored);
+	if (options->n_paths > 1)
+		return options_usage(options->command, "expected one table and nothing beside it, found %d paths",
+				     options->n_paths);
+	if (!csv_table_read(rows, options->path[0], RESULT_STATUS + 1, NULL, &error)) {
+		if (rows->n_rows)
+			return EXIT_DONE;
+		char name[TEXT_QUOTE_SIZE];
+		text_quote(options->path[0], name, sizeof name);
+		error_set(&error, STATUS_NO_DATA, "'%s' has no rows to show", name);
+	}
+	report_error("%s", error.text);
+	return EXIT_FAILED;
+}
+
+static int fit_rows(struct csv_table *rows, const struct options *options)
+{
+	struct files files;
+	struct batch batch;
+	const int bad = files_collect(&files, options->path, options->n_paths, options->recursive, options->cancel);
+	if (bad < 0)
+		return EXIT_FAILED;
+	struct error error;
+	enum status status = output_directory_spares(options->output, "fits.csv", files.path, (int)files.n, &error);
+	if (!status)
+		status = output_directory_takes(options->output, "fits.csv", &error);
+	if (status) {
+		files_free(&files);
+		if (status == STATUS_DOMAIN)
+			return options_usage(options->command, "%s", error.text);
+		report_error("%s", error.text);
+		return EXIT_FAILED;
+	}
+	if (batch_init(&batch, options, &files)) {
+		files_free(&files);
+		return EXIT_FAILED;
+	}
+	int code = files.n ? batch_run(&batch) : EXIT_FAILED;
+	for (size_t i = 0; i < batch.n; i++)
+		if (csv_table_move(rows, &batch.file[i].rows)) {
+			report_error("out of memory");
+			code = EXIT_FAILED;
+		}
+	batch_free(&batch);
+	files_free(&files);
+	return code == EXIT_DONE && bad ? EXIT_FAILED : code;
+}
+
+/* Keeps what has been fitted, in DIR/fits.csv. */
+static enum status keep_rows(const struct csv_table *rows, const char *directory, struct error *error)
+{
+	char *path;
+	if (asprintf(&path, "%s/fits.csv", directory) < 0)
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	const enum status status = store_write(path, rows, report_csv, error);
+	free(path);
+	return status;
+}
+
+int materials_collect(struct materials *materials, const struct options *options)
+{
+	bool table = false;
+	*materials = (struct materials){.rows = csv_table_make(result_columns, RESULT_COLUMNS)};
+	for (int i = 0; i < options->n_paths; i++)
+		table |= csv_is_name(options->path[i]);
+	materials->told = !table;
+	int code = (table ? read_rows : fit_rows)(&materials->rows, options);
+	if (sort_rows(&materials->rows) || group_rows(materials)) {
+		report_error("out of memory");
+		materials_free(materials);
+		return EXIT_FAILED;
+	}
+	struct error error;
+	if (!table && materials->n && keep_rows(&materials->rows, options->output, &error)) {
+		report_error("%s", error.text);
+		code = code == EXIT_DONE ? EXIT_FAILED : code;
+	}
+	return code;
+}
+
+void materials_free(struct materials *materials)
+{
+	csv_table_free(&materials->rows);
+	free(materials->material);
+	materials->material = NULL;
+	materials->n = 0;
+}
+
+/* One material */
+
+static enum status read_models(const struct material *material, int threads, struct material_data *data,
+			       struct error *error)
+{
+	char name[TEXT_QUOTE_SIZE];
+	text_quote(material->name, name, sizeof name);
+	for (size_t i = 0; i < material->n_rows; i++) {
+		char *const *row = material->row[i];
+		struct fitted *fit = &data->fit[data->n];
+		struct error why;
+		if (result_failed(row))
+			continue;
+		if (data->n == FIT_NDFS_MAX)
+			return error_set(error, STATUS_FORMAT,
+					 "cannot show '%s': expected at most %d rows of one material", name,
+					 FIT_NDFS_MAX);
+		*fit = (struct fitted){.row = row,
+				       .ndf = row[RESULT_NDF],
+				       .error = result_number(row, RESULT_ERROR),
+				       .options = fit_options_default()};
+		fit->options.threads = threads;
+		data->n++;
+		const enum status status = result_model(row, &fit->model, &fit->options, &fit->pwl, &why);
+		if (status)
+			return error_set(error, status, "cannot show '%s', %.16s: %.200s", name, fit->ndf, why.text);
+	}
+	if (data->n == 0)
+		return error_set(error, STATUS_NO_DATA, "cannot show '%s': it has no fit", name);
+	return STATUS_OK;
+}
+
+static enum status read_samples(const struct material *material, int threads, struct samples *samples,
+				struct error *error)
+{
+	char *const *row = material->row[0];
+	enum status status = merl_read(row[RESULT_PATH], threads, samples, error);
+	if (status)
+		return status;
+	status = result_check_input(row[RESULT_INPUT], samples, row[RESULT_PATH], error);
+	if (status)
+		samples_free(samples);
+	return status;
+}
+
+enum status material_read(const struct material *material, int threads, struct material_data *data, struct error *error)
+{
+	*data = (struct material_data){.name = material->name};
+	enum status status = read_models(material, threads, data, error);
+	if (!status)
+		status = read_samples(material, threads, &data->samples, error);
+	if (status)
+		material_data_free(data);
+	return status;
+}
+
+void material_data_free(struct material_data *data)
+{
+	for (int i = 0; i < data->n; i++)
+		result_model_free(&data->fit[i].model, data->fit[i].pwl);
+	samples_free(&data->samples);
+	*data = (struct material_data){.n = 0};
+}
+
+int material_best(const struct material_data *data)
+{
+	int best = 0;
+	for (int i = 1; i < data->n; i++)
+		if (data->fit[i].error < data->fit[best].error || isnan(data->fit[best].error))
+			best = i;
+	return best;
+}
