@@ -19,7 +19,7 @@
 
 /* A block is what one thread reads, converts and hashes at a time, about 1 MB: large enough for system calls and
  * waiting for turns not to matter, small enough to be in cache still for the second and third of these. */
-enum { BLOCKS_PER_PLANE = 10, N_BLOCKS = SAMPLES_CHANNELS * BLOCKS_PER_PLANE };
+enum { BLOCKS_PER_PLANE = 10, N_BLOCKS = MERL_CHANNELS * BLOCKS_PER_PLANE };
 
 enum { FILE_SHORT = -1 }; /* beside errno values: the file ended too early */
 
@@ -30,13 +30,13 @@ struct header {
 /* The header that a table with this n_phi_d has. */
 static struct header header_for(int n_phi_d)
 {
-	return (struct header){{htole32(SAMPLES_THETA_H), htole32(SAMPLES_THETA_D), htole32((uint32_t)n_phi_d)}};
+	return (struct header){{htole32(MERL_THETA_H), htole32(MERL_THETA_D), htole32((uint32_t)n_phi_d)}};
 }
 
 /* Bytes of a whole file with this n_phi_d. */
 static uint64_t file_size_for(int n_phi_d)
 {
-	const uint64_t numbers = (uint64_t)SAMPLES_CHANNELS * SAMPLES_THETA_H * SAMPLES_THETA_D * (uint64_t)n_phi_d;
+	const uint64_t numbers = (uint64_t)MERL_CHANNELS * MERL_THETA_H * MERL_THETA_D * (uint64_t)n_phi_d;
 
 	return sizeof(struct header) + numbers * sizeof(uint64_t);
 }
@@ -44,7 +44,7 @@ static uint64_t file_size_for(int n_phi_d)
 /* What the numbers in a file are multiplied by. */
 static double scale_of(int channel)
 {
-	static const double scale[SAMPLES_CHANNELS] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
+	static const double scale[MERL_CHANNELS] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
 
 	return scale[channel];
 }
@@ -154,11 +154,11 @@ struct masked {
 };
 
 /* Masks converted entries in all channels where one is negative or not finite, counts them, and flushes denormals. */
-static struct masked mask(const struct samples *samples, size_t first, size_t count)
+static struct masked mask(const struct measurement *measurement, size_t first, size_t count)
 {
-	float *restrict r = samples->value[0] + first;
-	float *restrict g = samples->value[1] + first;
-	float *restrict b = samples->value[2] + first;
+	float *restrict r = measurement->value[0] + first;
+	float *restrict g = measurement->value[1] + first;
+	float *restrict b = measurement->value[2] + first;
 	uint32_t n_negative = 0, n_nonfinite = 0;
 
 #pragma omp simd reduction(+ : n_negative, n_nonfinite)
@@ -202,10 +202,10 @@ static void turns_next(struct turns *turns)
 
 /* Reads, converts, masks and hashes everything after the header, in one pass over the file: while one thread hashes its
  * block, which goes in file order, the others read and convert theirs. */
-static enum status read_planes(int fd, int threads, XXH3_state_t *hash, uint64_t *buffers, struct samples *samples,
-			       struct error *why)
+static enum status read_planes(int fd, int threads, XXH3_state_t *hash, uint64_t *buffers,
+			       struct measurement *measurement, struct error *why)
 {
-	const size_t count = samples_count(samples) / BLOCKS_PER_PLANE;
+	const size_t count = measurement_count(measurement) / BLOCKS_PER_PLANE;
 	const size_t size = count * sizeof *buffers;
 	struct turns turns = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, 0};
 	size_t n_negative = 0, n_nonfinite = 0;
@@ -222,7 +222,7 @@ static enum status read_planes(int fd, int threads, XXH3_state_t *hash, uint64_t
 		if (!problem)
 			problem = read_fully(fd, raw, size, sizeof(struct header) + (size_t)block * size);
 		if (!problem)
-			convert(raw, samples->value[channel] + first, count, scale_of(channel));
+			convert(raw, measurement->value[channel] + first, count, scale_of(channel));
 		turns_await(&turns, block);
 		if (!failed)
 			failed = problem;
@@ -231,26 +231,26 @@ static enum status read_planes(int fd, int threads, XXH3_state_t *hash, uint64_t
 			XXH3_64bits_update(hash, raw, size);
 		turns_next(&turns);
 		/* All earlier blocks are converted by now, those of the other two planes among them. */
-		if (channel == SAMPLES_CHANNELS - 1 && !problem) {
-			const struct masked masked = mask(samples, first, count);
+		if (channel == MERL_CHANNELS - 1 && !problem) {
+			const struct masked masked = mask(measurement, first, count);
 			n_negative += masked.negative;
 			n_nonfinite += masked.nonfinite;
 		}
 	}
 	if (failed)
 		return read_failed(why, failed);
-	samples->n_negative = n_negative;
-	samples->n_nonfinite = n_nonfinite;
-	samples->file_hash = XXH3_64bits_digest(hash);
+	measurement->n_negative = n_negative;
+	measurement->n_nonfinite = n_nonfinite;
+	measurement->file_hash = XXH3_64bits_digest(hash);
 	return STATUS_OK;
 }
 
 /* read_planes() with the memory that it needs. */
-static enum status read_table(int fd, const struct header *header, int threads, struct samples *samples,
+static enum status read_table(int fd, const struct header *header, int threads, struct measurement *measurement,
 			      struct error *why)
 {
 	const int team = threads < 1 ? 1 : threads < N_BLOCKS ? threads : N_BLOCKS;
-	const size_t count = samples_count(samples) / BLOCKS_PER_PLANE;
+	const size_t count = measurement_count(measurement) / BLOCKS_PER_PLANE;
 	uint64_t *buffers = malloc((size_t)team * count * sizeof *buffers);
 	XXH3_state_t *hash = XXH3_createState();
 	enum status status = STATUS_NO_MEMORY;
@@ -258,7 +258,7 @@ static enum status read_table(int fd, const struct header *header, int threads, 
 	if (buffers && hash) {
 		XXH3_64bits_reset(hash);
 		XXH3_64bits_update(hash, header, sizeof *header);
-		status = read_planes(fd, team, hash, buffers, samples, why);
+		status = read_planes(fd, team, hash, buffers, measurement, why);
 	}
 	XXH3_freeState(hash);
 	free(buffers);
@@ -278,7 +278,8 @@ static enum status check_unchanged(int fd, const struct stat *before, struct err
 	return STATUS_OK;
 }
 
-static enum status read_open(int fd, const struct stat *st, int threads, struct samples *samples, struct error *why)
+static enum status read_open(int fd, const struct stat *st, int threads, struct measurement *measurement,
+			     struct error *why)
 {
 	struct header header;
 	int n_phi_d = 0;
@@ -290,30 +291,30 @@ static enum status read_open(int fd, const struct stat *st, int threads, struct 
 	if ((uint64_t)st->st_size != size)
 		return error_set(why, STATUS_FORMAT, "expected %" PRIu64 " bytes for a 90 x 90 x %d table, found %jd",
 				 size, n_phi_d, (intmax_t)st->st_size);
-	status = samples_reserve(samples, n_phi_d);
+	status = measurement_reserve(measurement, n_phi_d);
 	if (status != STATUS_OK)
 		return status;
-	samples->file_size = size;
-	status = read_table(fd, &header, threads, samples, why);
+	measurement->file_size = size;
+	status = read_table(fd, &header, threads, measurement, why);
 	return status == STATUS_OK ? check_unchanged(fd, st, why) : status;
 }
 
-enum status merl_read(const char *path, int threads, struct samples *samples, struct error *error)
+enum status merl_read(const char *path, int threads, struct measurement *measurement, struct error *error)
 {
 	struct error why = {{0}};
 	struct stat st = {0};
 	int fd;
 
-	*samples = (struct samples){0};
+	*measurement = (struct measurement){0};
 	enum status status = regular_file_open(path, "a MERL file", &fd, &st, &why);
 	if (status == STATUS_OK)
-		status = read_open(fd, &st, threads, samples, &why);
+		status = read_open(fd, &st, threads, measurement, &why);
 	if (fd >= 0)
 		close(fd);
 	if (status != STATUS_OK) {
 		char name[TEXT_QUOTE_SIZE];
 		text_quote(path, name, sizeof name);
-		samples_free(samples);
+		measurement_free(measurement);
 		return error_set(error, status, "cannot read '%s': %s", name,
 				 why.text[0] ? why.text : status_str(status));
 	}
@@ -335,17 +336,17 @@ static bool write_plane(FILE *stream, const float *value, size_t count, double s
 	return true;
 }
 
-enum status merl_write(const char *path, const struct samples *samples, struct error *error)
+enum status merl_write(const char *path, const struct measurement *measurement, struct error *error)
 {
-	const struct header header = header_for(samples->n_phi_d);
+	const struct header header = header_for(measurement->n_phi_d);
 	struct atomic_file file;
 	enum status status = atomic_file_open(&file, path, error);
 
 	if (status != STATUS_OK)
 		return status;
 	bool written = fwrite(&header, sizeof header, 1, file.stream) == 1;
-	for (int c = 0; c < SAMPLES_CHANNELS && written; c++)
-		written = write_plane(file.stream, samples->value[c], samples_count(samples), scale_of(c));
+	for (int c = 0; c < MERL_CHANNELS && written; c++)
+		written = write_plane(file.stream, measurement->value[c], measurement_count(measurement), scale_of(c));
 	if (!written)
 		file.errnum = errno;
 	return atomic_file_commit(&file, error);

@@ -8,7 +8,7 @@
 #ifndef MERL_H
 #define MERL_H
 
-#include "data_readers/samples.h"
+#include "data_readers/measurement.h"
 
 /* merl_read - reads `path` into a new table with up to `threads` threads (less than 1 counts as 1), which change no
  * result. An entry with a negative or non-finite value in any channel is masked in all three and counted once, as
@@ -16,11 +16,11 @@
  * float becomes 0. Returns STATUS_IO if the file cannot be opened or read or changes meanwhile; STATUS_FORMAT if it is
  * not a regular file, or its dimensions or size are not a MERL table's; STATUS_NO_MEMORY. *samples is then cleared and
  * `error` (may be NULL) says which file, what was expected, what was found. Never waits on a pipe or a device. */
-MUST_CHECK enum status merl_read(const char *path, int threads, struct samples *samples, struct error *error);
+MUST_CHECK enum status merl_read(const char *path, int threads, struct measurement *measurement, struct error *error);
 
 /* merl_write - writes a table; masked entries as -1. Reading it again gives the same floats.
  * Written beside `path`, synced, renamed when complete, see atomic_file.h. Returns STATUS_IO, STATUS_NO_MEMORY;
  * what was at `path` is then untouched. */
-MUST_CHECK enum status merl_write(const char *path, const struct samples *samples, struct error *error);
+MUST_CHECK enum status merl_write(const char *path, const struct measurement *measurement, struct error *error);
 
 #endif

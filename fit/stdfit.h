@@ -25,8 +25,8 @@ extern "C" {
 #include "src/vec3.h"
 #include "src/vndf.h"
 /* data_readers: measured data */
+#include "data_readers/measurement.h"
 #include "data_readers/merl.h"
-#include "data_readers/samples.h"
 /* fit */
 #include "fit/search/fit.h"
 

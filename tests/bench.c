@@ -49,13 +49,13 @@ static float stream(const float *data, size_t bytes)
 	return a + b + c + d;
 }
 
-static size_t value_bytes(const struct table *t)
+static size_t value_bytes(const struct sample_set *t)
 {
-	return (size_t)(t->n_blocks + t->n_pair_blocks) * SAMPLES_CHANNELS * KERNEL_BLOCK * sizeof(float);
+	return (size_t)(t->n_blocks + t->n_pair_blocks) * MERL_CHANNELS * KERNEL_BLOCK * sizeof(float);
 }
 
 /* Sums every byte that the model and a pass touch, block by block, in as many threads. */
-static float stream_all(const struct table *t, const float *s, bool geometry, int threads)
+static float stream_all(const struct sample_set *t, const float *s, bool geometry, int threads)
 {
 	const size_t slots = (size_t)t->n_blocks * KERNEL_BLOCK, step = KERNEL_BLOCK * 16;
 	const size_t values = value_bytes(t) / sizeof(float), value_step = values / (slots / step + 1) + 1;
@@ -70,7 +70,7 @@ static float stream_all(const struct table *t, const float *s, bool geometry, in
 			sum += stream(t->value + v, 4 * (values - v < value_step ? values - v : value_step));
 		if (geometry)
 			sum += stream((const float *)t->q_i + at, n * 4) + stream((const float *)t->q_o + at, n * 4) +
-			       stream(t->geo + at, n * 4) + stream((const float *)t->row + at / 2, n * 2);
+			       stream(t->geometric_factor + at, n * 4) + stream((const float *)t->row + at / 2, n * 2);
 	}
 	return sum;
 }
@@ -78,21 +78,21 @@ static float stream_all(const struct table *t, const float *s, bool geometry, in
 /* One pass, with or without the model before it. */
 static double pass_all(const struct objective *o, const struct kernel_g1 *g1, bool model, double tau, int threads)
 {
-	const struct table *t = o->table;
-	const struct kernel_look look = {0.1, 0.4, tau, 1e-3};
+	const struct sample_set *t = o->table;
+	const struct kernel_evaluation look = {0.1, 0.4, tau, 1e-3};
 	double sum = 0;
 
 #pragma omp parallel for num_threads(threads) schedule(static) reduction(+ : sum)
 	for (int b = 0; b < t->n_blocks; b++) {
 		const size_t at = (size_t)b * KERNEL_BLOCK;
-		const struct kernel_slots slots = table_slots(t, b);
+		const struct kernel_samples slots = sample_set_block(t, b);
 		struct kernel_sums sums;
 
 		if (model)
 			o->kernel->lobe(KERNEL_SEPARABLE, g1, o->row, &slots, o->s + at);
-		for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-			o->kernel->pass(b < t->n_pair_blocks ? 2 : 1, table_value(t, b, c), t->w + at, o->s + at, &look,
-					&sums);
+		for (int c = 0; c < MERL_CHANNELS; c++) {
+			o->kernel->pass(b < t->n_pair_blocks ? 2 : 1, sample_set_value(t, b, c), t->w + at, o->s + at,
+					&look, &sums);
 			sum += sums.error;
 		}
 	}
@@ -102,7 +102,8 @@ static double pass_all(const struct objective *o, const struct kernel_g1 *g1, bo
 /* Keeps results alive. */
 static volatile double sink;
 
-static void bench_kernel(const struct table *table, const struct fit_options *options, const char *ndf, int threads)
+static void bench_kernel(const struct sample_set *table, const struct fit_options *options, const char *ndf,
+			 int threads)
 {
 	const struct shape shape = {0.2, 1.7, 1.5, 0};
 	double t_stream[REPEATS], t_pass[REPEATS], t_curved[REPEATS], t_stream_geo[REPEATS], t_model[REPEATS];
@@ -138,19 +139,19 @@ static void bench_kernel(const struct table *table, const struct fit_options *op
 }
 
 /* Median seconds of a fit of all three NDFs, the table in memory. */
-static double fit_time(const struct samples *samples, const struct fit_options *options, long *evaluations,
+static double fit_time(const struct measurement *measurement, const struct fit_options *options, long *evaluations,
 		       long *passes)
 {
 	struct fit_context *context;
 	struct fit_result results[3];
 	double seconds[FITS];
 
-	if (fit_context_new(&context, samples->n_phi_d, options) != STATUS_OK)
+	if (fit_context_new(&context, measurement->n_phi_d, options) != STATUS_OK)
 		return NAN;
 	for (int r = 0; r < FITS; r++) {
 		const double t = search_clock();
 
-		if (fit_run(context, samples, options, results, NULL) != STATUS_OK)
+		if (fit_run(context, measurement, options, results, NULL) != STATUS_OK)
 			return NAN;
 		seconds[r] = search_clock() - t;
 	}
@@ -164,77 +165,77 @@ static double fit_time(const struct samples *samples, const struct fit_options *
 }
 
 /* Seconds a material when two are fitted side by side, a thread each. */
-static double batch_time(const struct samples *samples, const struct fit_options *options)
+static double batch_time(const struct measurement *measurement, const struct fit_options *options)
 {
 	enum { MATERIALS = 6 };
 	struct fit_context *context;
 	const double t = search_clock();
 
-	if (fit_context_new(&context, samples->n_phi_d, options) != STATUS_OK)
+	if (fit_context_new(&context, measurement->n_phi_d, options) != STATUS_OK)
 		return NAN;
 #pragma omp parallel for num_threads(2) schedule(dynamic)
 	for (int n = 0; n < MATERIALS; n++) {
 		struct fit_result results[3];
 
-		if (fit_run(context, samples, options, results, NULL) != STATUS_OK)
+		if (fit_run(context, measurement, options, results, NULL) != STATUS_OK)
 			abort();
 	}
 	fit_context_free(context);
 	return (search_clock() - t) / MATERIALS;
 }
 
-static void bench_fits(const struct samples *samples, const struct samples *large)
+static void bench_fits(const struct measurement *measurement, const struct measurement *large)
 {
 	struct fit_options o = fit_options_default();
 	long evaluations = 0, passes = 0;
 
 	o.threads = 1;
-	const double one = fit_time(samples, &o, &evaluations, &passes);
+	const double one = fit_time(measurement, &o, &evaluations, &passes);
 
 	put("fit of three NDFs", "all", 1, "seconds", one);
 	put("fit of three NDFs", "all", 1, "shapes evaluated", (double)evaluations);
 	put("fit of three NDFs", "all", 1, "passes over the full table", (double)passes);
-	put("batch, one material a thread", "all", 2, "materials a second", 1 / batch_time(samples, &o));
+	put("batch, one material a thread", "all", 2, "materials a second", 1 / batch_time(measurement, &o));
 	o.threads = 2;
-	const double two = fit_time(samples, &o, &evaluations, &passes);
+	const double two = fit_time(measurement, &o, &evaluations, &passes);
 
 	put("fit of three NDFs", "all", 2, "one thread / two threads", one / two);
 	put("fit of three NDFs, 360 table", "all", 2, "time / 180 table",
 	    fit_time(large, &o, &evaluations, &passes) / two);
 	o.max_theta = 60;
 	put("fit of three NDFs, max theta 60", "all", 2, "time / whole table",
-	    fit_time(samples, &o, &evaluations, &passes) / two);
+	    fit_time(measurement, &o, &evaluations, &passes) / two);
 	o.max_theta = 90;
 	o.diffuse = false;
 	put("fit of three NDFs, no diffuse", "all", 2, "time / whole model",
-	    fit_time(samples, &o, &evaluations, &passes) / two);
+	    fit_time(measurement, &o, &evaluations, &passes) / two);
 	o.diffuse = true;
 	o.gray = true;
 	put("fit of three NDFs, gray", "all", 2, "time / whole model",
-	    fit_time(samples, &o, &evaluations, &passes) / two);
+	    fit_time(measurement, &o, &evaluations, &passes) / two);
 	o.gray = false;
 	o.n_ndf = 2;
 	o.ndf[0] = ndf_find("ggx");
 	o.ndf[1] = ndf_find("beckmann");
 	put("fit of GGX and Beckmann", "two", 2, "time / three NDFs",
-	    fit_time(samples, &o, &evaluations, &passes) / two);
+	    fit_time(measurement, &o, &evaluations, &passes) / two);
 }
 
 int main(int argc, char **argv)
 {
 	const struct cook_torrance truth = make_model("std", 0.17, 1.63, 1.6);
-	struct samples samples = make_table(&truth, 180, BINS_NODE, 0.2),
-		       large = make_table(&truth, 360, BINS_NODE, 0.2);
+	struct measurement measurement = make_table(&truth, 180, BINS_NODE, 0.2),
+			   large = make_table(&truth, 360, BINS_NODE, 0.2);
 	struct fit_options options = fit_options_default();
 	struct geometry geometry;
-	struct table table;
+	struct sample_set table;
 
 	csv = argc > 1 ? fopen(argv[1], "w") : NULL;
 	if (csv)
 		fprintf(csv, "what,model,threads,quantity,value\n");
 	options.threads = 1;
 	if (geometry_init(&geometry, 180, &options) != STATUS_OK ||
-	    table_init(&table, &geometry, &samples, 1) != STATUS_OK)
+	    sample_set_init(&table, &geometry, &measurement, 1) != STATUS_OK)
 		return 1;
 	printf("kernel %s, %zu entries, %.1f MB a pass, medians of %d\n", kernel_pick()->name, table.n_entries,
 	       1e-6 * (double)(value_bytes(&table) + (size_t)table.n_blocks * KERNEL_BLOCK * 8), REPEATS);
@@ -242,11 +243,11 @@ int main(int argc, char **argv)
 		bench_kernel(&table, &options, "ggx", threads);
 		bench_kernel(&table, &options, "std", threads);
 	}
-	table_free(&table);
+	sample_set_free(&table);
 	geometry_free(&geometry);
-	bench_fits(&samples, &large);
-	samples_free(&samples);
-	samples_free(&large);
+	bench_fits(&measurement, &large);
+	measurement_free(&measurement);
+	measurement_free(&large);
 	if (csv && fclose(csv) != 0) {
 		fprintf(stderr, "bench: cannot write '%s'\n", argv[1]);
 		return 1;

@@ -3,7 +3,7 @@
 #ifndef MAKE_TABLE_H
 #define MAKE_TABLE_H
 
-#include "data_readers/samples.h"
+#include "data_readers/measurement.h"
 #include "src/cook_torrance.h"
 #include <stdlib.h>
 
@@ -28,20 +28,20 @@ static inline struct cook_torrance make_model(const char *ndf, double sigma, dou
 
 /* The model's values at every entry above the horizon whose phi_d index divides by `step`, times
  * 1 + noise * uniform(-1, 1); the others are masked. */
-static inline struct samples make_sparse_table(const struct cook_torrance *model, int n_phi_d, enum bins bins,
-					       double noise, int step)
+static inline struct measurement make_sparse_table(const struct cook_torrance *model, int n_phi_d, enum bins bins,
+						   double noise, int step)
 {
-	struct samples samples;
+	struct measurement measurement;
 
-	if (samples_alloc(&samples, n_phi_d) != STATUS_OK)
+	if (measurement_alloc(&measurement, n_phi_d) != STATUS_OK)
 		abort();
 #pragma omp parallel for
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		for (int j = 0; j < SAMPLES_THETA_D; j++) {
+	for (int i = 0; i < MERL_THETA_H; i++)
+		for (int j = 0; j < MERL_THETA_D; j++) {
 			unsigned seed = (unsigned)(i * 91 + j);
 
 			for (int k = 0; k < n_phi_d; k += step) {
-				const size_t at = samples_at(n_phi_d, i, j, k);
+				const size_t at = measurement_at(n_phi_d, i, j, k);
 				struct vec3 wi, wo;
 				double f[3];
 
@@ -50,14 +50,15 @@ static inline struct samples make_sparse_table(const struct cook_torrance *model
 				for (int c = 0; c < 3; c++) {
 					f[c] *= 1 + noise * (2 * random_unit(&seed) - 1);
 					if (wi.z > 1e-9 && wo.z > 1e-9)
-						samples.value[c][at] = (float)f[c];
+						measurement.value[c][at] = (float)f[c];
 				}
 			}
 		}
-	return samples;
+	return measurement;
 }
 
-static inline struct samples make_table(const struct cook_torrance *model, int n_phi_d, enum bins bins, double noise)
+static inline struct measurement make_table(const struct cook_torrance *model, int n_phi_d, enum bins bins,
+					    double noise)
 {
 	return make_sparse_table(model, n_phi_d, bins, noise, 1);
 }

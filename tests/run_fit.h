@@ -18,13 +18,14 @@ static inline struct fit_options options_for(const char *ndf)
 }
 
 /* The fit has to succeed. */
-static inline void run_fit(const struct samples *samples, const struct fit_options *options, struct fit_result *results)
+static inline void run_fit(const struct measurement *measurement, const struct fit_options *options,
+			   struct fit_result *results)
 {
 	struct fit_context *context;
 	struct error error = {""};
 
-	assert_int_equal(fit_context_new(&context, samples->n_phi_d, options), STATUS_OK);
-	if (fit_run(context, samples, options, results, &error) != STATUS_OK)
+	assert_int_equal(fit_context_new(&context, measurement->n_phi_d, options), STATUS_OK);
+	if (fit_run(context, measurement, options, results, &error) != STATUS_OK)
 		fail_msg("fit: %s", error.text);
 	fit_context_free(context);
 }

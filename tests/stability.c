@@ -825,14 +825,13 @@ static void sweep_lobe(struct objective *o, const struct geometry *g, const stru
 	snprintf(name, sizeof(name), "%s %s", gaf_name(model->gaf), density);
 	struct row *row = row_of("float f", name), *alike = row_of("float kernels", gaf_name(model->gaf));
 	const int stride = ndf_has_anisotropy(model->ndf.class) ? 61 : 199; /* the others' reference is slow */
-	for (int block = 0; (block + 1) * KERNEL_BLOCK < g->n_slots; block += stride) {
+	for (int block = 0; (block + 1) * KERNEL_BLOCK < g->n_samples; block += stride) {
 		const int at = block * KERNEL_BLOCK;
-		const struct kernel_slots slots = {g->q_i + at, g->q_o + at, g->geo + at, g->row + at};
+		const struct kernel_samples slots = {g->q_i + at, g->q_o + at, g->geometric_factor + at, g->row + at};
 		kernel_plain.lobe(gaf[model->gaf], &g1, o->row, &slots, plain);
 		kernel_pick()->lobe(gaf[model->gaf], &g1, o->row, &slots, s);
 		for (int n = 0; n < KERNEL_BLOCK; n++) {
-			const int i = slots.row[n] / SAMPLES_THETA_D, j = slots.row[n] % SAMPLES_THETA_D,
-				  k = g->k[at + n];
+			const int i = slots.row[n] / MERL_THETA_D, j = slots.row[n] % MERL_THETA_D, k = g->k[at + n];
 			struct vec3 wi, wo;
 			entries_dirs(&g->entries, i, j, k, &wi, &wo);
 			/* Smaller ones than a float's D has digits for are told from 0 only. */
@@ -848,7 +847,7 @@ static void sweep_lobe(struct objective *o, const struct geometry *g, const stru
 	}
 }
 
-static void sweep_shapes(const struct geometry *g, const struct table *table, const struct fit_options *options)
+static void sweep_shapes(const struct geometry *g, const struct sample_set *table, const struct fit_options *options)
 {
 	static const double sigma[] = {1e-30, 1e-7, 1e-4, 0.05, 0.7, 4.0, 1e4};
 	static const double gamma[] = {1.5001, 2.0, 7.3, 1000.0, INFINITY};
@@ -877,19 +876,19 @@ static void sweep_shapes(const struct geometry *g, const struct table *table, co
 }
 
 /* The error of tables from the smallest floats to the largest: finite, and that of the same table of moderate size. */
-static void sweep_scales(const struct geometry *g, const struct fit_options *options, struct samples *samples)
+static void sweep_scales(const struct geometry *g, const struct fit_options *options, struct measurement *measurement)
 {
 	static const float scale[] = {1e-45f, 1e-41f, 1e-30f, 1.0f, 1e25f, 1e38f, FLT_MAX};
 	for (int i = 0; i < COUNT(scale); i++) {
-		struct table table;
+		struct sample_set table;
 		struct objective o;
 		struct linear linear;
 		const struct shape shape = {0.1, 3.0, 1.5, 0.0};
-		for (size_t e = 0; e < samples_count(samples); e++)
-			for (int c = 0; c < SAMPLES_CHANNELS; c++)
-				samples->value[c][e] = scale[i];
+		for (size_t e = 0; e < measurement_count(measurement); e++)
+			for (int c = 0; c < MERL_CHANNELS; c++)
+				measurement->value[c][e] = scale[i];
 		set_place("all %g, weight %s", (double)scale[i], weight_name(options->weight));
-		if (table_init(&table, g, samples, 1) != STATUS_OK) {
+		if (sample_set_init(&table, g, measurement, 1) != STATUS_OK) {
 			row_of("float error", "E")->refused++;
 			continue;
 		}
@@ -898,39 +897,39 @@ static void sweep_scales(const struct geometry *g, const struct fit_options *opt
 		/* Far too dark or too bright for kd and ks: nothing, or nearly nothing, can be fitted. */
 		const double E = objective_eval(&o, &shape, 1e-6, true, &linear);
 		check(row_of("float error", "E"), E, 0, (struct expected){0.0, 1.0 + 1e-6, false, NAN, 1.0});
-		for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		for (int c = 0; c < MERL_CHANNELS; c++)
 			check(row_of("float error", "kd, ks"), linear.kd[c] + linear.ks[c], 0,
 			      (struct expected){0.0, 2.0, false, NAN, 1.0});
 		objective_free(&o);
-		table_free(&table);
+		sample_set_free(&table);
 	}
 }
 
 static void sweep_float(void)
 {
-	struct samples samples;
-	if (samples_alloc(&samples, 180) != STATUS_OK)
+	struct measurement measurement;
+	if (measurement_alloc(&measurement, 180) != STATUS_OK)
 		abort();
 	for (int gaf = 0; gaf < GAF_COUNT; gaf++) {
 		struct fit_options options = fit_options_default();
 		struct geometry geometry;
-		struct table table;
+		struct sample_set table;
 		options.gaf = (enum gaf)gaf;
 		options.bins = gaf == GAF_CORRELATED ? BINS_CENTRE : BINS_NODE;
 		options.weight = (enum weight)(gaf % WEIGHT_COUNT);
 		options.threads = 1;
-		for (size_t e = 0; e < samples_count(&samples); e++)
-			for (int c = 0; c < SAMPLES_CHANNELS; c++)
-				samples.value[c][e] = 0.1f;
+		for (size_t e = 0; e < measurement_count(&measurement); e++)
+			for (int c = 0; c < MERL_CHANNELS; c++)
+				measurement.value[c][e] = 0.1f;
 		if (geometry_init(&geometry, 180, &options) != STATUS_OK ||
-		    table_init(&table, &geometry, &samples, 1) != STATUS_OK)
+		    sample_set_init(&table, &geometry, &measurement, 1) != STATUS_OK)
 			abort();
 		sweep_shapes(&geometry, &table, &options);
-		sweep_scales(&geometry, &options, &samples);
-		table_free(&table);
+		sweep_scales(&geometry, &options, &measurement);
+		sample_set_free(&table);
 		geometry_free(&geometry);
 	}
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 static bool too_far(const struct row *row)

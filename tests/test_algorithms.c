@@ -8,9 +8,9 @@
 #include <unistd.h>
 
 /* Measurements that no model meets exactly, and the few of them that are looked at. */
-static struct samples material;
+static struct measurement material;
 static struct geometry geometry;
-static struct table table;
+static struct sample_set table;
 
 static struct fit_options options_for(const struct algorithm *algorithm, struct trace *trace)
 {
@@ -36,15 +36,15 @@ static int set_up(void **state)
 	/* Against a search that does not end. */
 	alarm(300);
 	material = make_table(&model, 180, BINS_NODE, 0.2);
-	return geometry_init(&geometry, 180, &options) || table_init(&table, &geometry, &material, 1);
+	return geometry_init(&geometry, 180, &options) || sample_set_init(&table, &geometry, &material, 1);
 }
 
 static int tear_down(void **state)
 {
 	(void)state;
-	table_free(&table);
+	sample_set_free(&table);
 	geometry_free(&geometry);
-	samples_free(&material);
+	measurement_free(&material);
 	return 0;
 }
 

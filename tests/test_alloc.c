@@ -258,12 +258,12 @@ static char *content(const char *path, bool binary)
 	if (access(path, F_OK))
 		return NULL;
 	if (binary) {
-		struct samples samples;
+		struct measurement measurement;
 		char text[RESULT_INPUT_SIZE];
-		if (merl_read(path, 1, &samples, NULL))
+		if (merl_read(path, 1, &measurement, NULL))
 			return strdup("broken");
-		result_input(text, &samples);
-		samples_free(&samples);
+		result_input(text, &measurement);
+		measurement_free(&measurement);
 		return strdup(text);
 	}
 	char *text = slurp_bytes(path);

@@ -3,7 +3,7 @@
  * the errors they tell; refusals. The GLSL has a test of its own. Runs $STDFIT or build/stdfit. */
 #include "data_readers/merl.h"
 #include "fit/error/model_table.h"
-#include "fit/error/table.h"
+#include "fit/error/sample_set.h"
 #include "fit/export/json.h"
 #include "fit/export/model_json.h"
 #include "make_table.h"
@@ -71,14 +71,14 @@ static void expect_told(const char *words, double error)
 static double error_within(double max_theta, const struct cook_torrance *truth, const struct cook_torrance *model)
 {
 	struct fit_options options = fit_options_default();
-	struct samples samples;
+	struct measurement measurement;
 	struct fit_metrics metrics;
 	struct error error = {""};
 
 	options.max_theta = max_theta;
-	assert_int_equal(model_table(truth, BINS_NODE, 180, max_theta, 1, &samples), STATUS_OK);
-	assert_int_equal(fit_eval(&samples, model, &options, &metrics, &error), STATUS_OK);
-	samples_free(&samples);
+	assert_int_equal(model_table(truth, BINS_NODE, 180, max_theta, 1, &measurement), STATUS_OK);
+	assert_int_equal(fit_eval(&measurement, model, &options, &metrics, &error), STATUS_OK);
+	measurement_free(&measurement);
 	return metrics.error[WEIGHT_NONE];
 }
 
@@ -491,7 +491,7 @@ static void gltf_tells_its_error(void **state)
 static void merl_is_the_model(void **state)
 {
 	const struct cook_torrance model = given("ggx", 0.2, 2, 1.5);
-	struct samples want = make_table(&model, 180, BINS_CENTRE, 0), got;
+	struct measurement want = make_table(&model, 180, BINS_CENTRE, 0), got;
 	struct error error = {""};
 	size_t n = 0;
 
@@ -502,14 +502,14 @@ static void merl_is_the_model(void **state)
 	assert_memory_equal(last.err, "exact: ", 7);
 	assert_int_equal(merl_read("made.binary", 1, &got, &error), STATUS_OK);
 	for (int c = 0; c < 3; c++)
-		for (size_t i = 0; i < samples_count(&want); i++)
+		for (size_t i = 0; i < measurement_count(&want); i++)
 			if (!isnan(want.value[c][i])) {
 				check_rel((double)got.value[c][i], (double)want.value[c][i], 1.3e-7, "entry");
 				n++;
 			}
 	assert_true(n > 3000000);
-	samples_free(&want);
-	samples_free(&got);
+	measurement_free(&want);
+	measurement_free(&got);
 	stdfit("export --format merl -o made.binary -q --kd 1");
 	expect_code(0);
 	assert_string_equal(last.err, "");

@@ -29,13 +29,13 @@ static void recovers_the_parameters(void **state)
 		const struct fit_options options = options_for(m->ndf);
 		struct cook_torrance truth = make_model(m->ndf, m->sigma, m->gamma, m->n);
 		struct fit_result r;
-		struct samples samples;
+		struct measurement measurement;
 		char label[64];
 
 		if (m->n > 3)
 			truth.kd[0] = truth.kd[1] = truth.kd[2] = 0;
-		samples = make_table(&truth, 180, BINS_NODE, 0);
-		run_fit(&samples, &options, &r);
+		measurement = make_table(&truth, 180, BINS_NODE, 0);
+		run_fit(&measurement, &options, &r);
 		snprintf(label, sizeof label, "%s %s", m->what, m->ndf);
 		check_between(r.error, 0, 2e-4, label);
 		check_rel(r.model.ndf.sigma_x, m->sigma, 2e-3, label);
@@ -48,24 +48,24 @@ static void recovers_the_parameters(void **state)
 			check_rel(r.model.ks[c] * f0, truth.ks[c] * want, 5e-3, label);
 			check_abs(r.model.kd[c], truth.kd[c], 1e-3, label);
 		}
-		samples_free(&samples);
+		measurement_free(&measurement);
 	}
 }
 
 /* Noisy measurements of something that no model is: a sum of two lobes. */
-static struct samples two_lobes(void)
+static struct measurement two_lobes(void)
 {
 	struct cook_torrance wide = make_model("beckmann", 0.5, INFINITY, 1.5),
 			     narrow = make_model("ggx", 0.03, 2, 1.8);
-	struct samples a, b;
+	struct measurement a, b;
 
 	narrow.kd[0] = narrow.kd[1] = narrow.kd[2] = 0;
 	a = make_table(&wide, 180, BINS_NODE, 0.1);
 	b = make_table(&narrow, 180, BINS_NODE, 0.3);
 	for (int c = 0; c < 3; c++)
-		for (size_t e = 0; e < samples_count(&a); e++)
+		for (size_t e = 0; e < measurement_count(&a); e++)
 			a.value[c][e] += b.value[c][e];
-	samples_free(&b);
+	measurement_free(&b);
 	return a;
 }
 
@@ -87,12 +87,12 @@ static void nested_models_and_threads(void **state)
 {
 	struct fit_options options = fit_options_default(), alone = options_for("std");
 	struct fit_result r[3], again[3], std;
-	struct samples samples = two_lobes();
+	struct measurement measurement = two_lobes();
 	struct fit_metrics metrics;
 
 	(void)state;
 	options.threads = 1;
-	run_fit(&samples, &options, r);
+	run_fit(&measurement, &options, r);
 	assert_true(r[0].error <= r[1].error);
 	assert_true(r[0].error <= r[2].error);
 	for (int n = 0; n < 3; n++) {
@@ -101,52 +101,52 @@ static void nested_models_and_threads(void **state)
 		check_between(r[n].error - r[n].lower_bound, -1e-8, 1.2e-7, "certified gap");
 	}
 	for (options.threads = 2; options.threads <= 3; options.threads++) {
-		run_fit(&samples, &options, again);
+		run_fit(&measurement, &options, again);
 		for (int n = 0; n < 3; n++)
 			check_same(&r[n], &again[n]);
 	}
 	/* STD asked for alone fits the nested models inside. */
-	run_fit(&samples, &alone, &std);
+	run_fit(&measurement, &alone, &std);
 	check_same(&r[0], &std);
-	assert_int_equal(fit_eval(&samples, &std.model, &alone, &metrics, NULL), STATUS_OK);
+	assert_int_equal(fit_eval(&measurement, &std.model, &alone, &metrics, NULL), STATUS_OK);
 	assert_memory_equal(&metrics, &std.metrics, sizeof metrics);
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 static void options_leave_out_what_they_say(void **state)
 {
 	const struct cook_torrance truth = make_model("ggx", 0.2, 2, 1.5);
-	struct samples samples = make_table(&truth, 180, BINS_NODE, 0.1);
+	struct measurement measurement = make_table(&truth, 180, BINS_NODE, 0.1);
 	struct fit_options o = options_for("ggx");
 	struct fit_result r, lambert, gray;
 
 	(void)state;
 	o.sigma = 0.25;
 	o.ior = 1.7;
-	run_fit(&samples, &o, &r);
+	run_fit(&measurement, &o, &r);
 	check_abs(r.model.ndf.sigma_x, 0.25, 0, "fixed sigma");
 	check_abs(r.model.n, 1.7, 0, "fixed ior");
 	o.diffuse = false;
-	run_fit(&samples, &o, &r);
+	run_fit(&measurement, &o, &r);
 	check_abs(r.model.kd[0] + r.model.kd[1] + r.model.kd[2], 0, 0, "no diffuse");
 	o.diffuse = true;
 	o.gray = true;
-	run_fit(&samples, &o, &gray);
+	run_fit(&measurement, &o, &gray);
 	assert_true(gray.model.kd[0] == gray.model.kd[1] && gray.model.ks[0] == gray.model.ks[2]);
 	o.gray = false;
 	o.specular = false;
-	run_fit(&samples, &o, &lambert);
+	run_fit(&measurement, &o, &lambert);
 	check_abs(lambert.model.ks[0] + lambert.model.ks[1] + lambert.model.ks[2], 0, 0, "no specular");
 	assert_true(lambert.error > r.error || lambert.error > gray.error);
 	/* Nothing is searched; what is left is whether kd is determined. */
 	assert_in_range(lambert.evaluations, 1, 5);
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 static void can_be_cancelled(void **state)
 {
 	const struct cook_torrance truth = make_model("std", 0.2, 1.7, 1.5);
-	struct samples samples = make_table(&truth, 180, BINS_NODE, 0);
+	struct measurement measurement = make_table(&truth, 180, BINS_NODE, 0);
 	struct fit_options o = options_for("std");
 	const atomic_bool cancel = true;
 	struct fit_context *context;
@@ -155,9 +155,9 @@ static void can_be_cancelled(void **state)
 	(void)state;
 	o.cancel = &cancel;
 	assert_int_equal(fit_context_new(&context, 180, &o), STATUS_OK);
-	assert_int_equal(fit_run(context, &samples, &o, &r, NULL), STATUS_INTERRUPTED);
+	assert_int_equal(fit_run(context, &measurement, &o, &r, NULL), STATUS_INTERRUPTED);
 	fit_context_free(context);
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 int main(void)

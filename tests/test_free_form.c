@@ -7,19 +7,19 @@
 #include "run_fit.h"
 
 /* A lobe of its own shape, neither STD nor GGX nor Beckmann: a narrow one on a wide one. */
-static struct samples made(enum bins bins)
+static struct measurement made(enum bins bins)
 {
 	struct cook_torrance wide = make_model("beckmann", 0.4, INFINITY, 1.6),
 			     narrow = make_model("ggx", 0.05, 2, 1.6);
-	struct samples a, b;
+	struct measurement a, b;
 
 	narrow.kd[0] = narrow.kd[1] = narrow.kd[2] = 0;
 	a = make_table(&wide, 180, bins, 0.05);
 	b = make_table(&narrow, 180, bins, 0.05);
 	for (int c = 0; c < 3; c++)
-		for (size_t e = 0; e < samples_count(&a); e++)
+		for (size_t e = 0; e < measurement_count(&a); e++)
 			a.value[c][e] += 0.2F * b.value[c][e];
-	samples_free(&b);
+	measurement_free(&b);
 	return a;
 }
 
@@ -28,13 +28,13 @@ static void check_floor(enum bins bins)
 	struct fit_options o = fit_options_default();
 	struct fit_result r[4];
 	struct fit_metrics metrics;
-	struct samples samples = made(bins);
+	struct measurement measurement = made(bins);
 
 	o.bins = bins;
 	o.max_theta = 70;
 	o.threads = 2;
 	o.ndf[o.n_ndf++] = ndf_find("pl");
-	run_fit(&samples, &o, r);
+	run_fit(&measurement, &o, r);
 	assert_non_null(r[3].pwl);
 	assert_ptr_equal(r[3].model.ndf.pwl, r[3].pwl);
 	for (int n = 0; n < 3; n++) {
@@ -45,12 +45,12 @@ static void check_floor(enum bins bins)
 	/* Here it is really better: no parametric NDF has two widths. */
 	assert_true(r[3].error < 0.9 * r[0].error);
 	check_between(r[3].error - r[3].lower_bound, -1e-6, 1e-6, "certified gap");
-	assert_int_equal(fit_eval(&samples, &r[3].model, &o, &metrics, NULL), STATUS_OK);
+	assert_int_equal(fit_eval(&measurement, &r[3].model, &o, &metrics, NULL), STATUS_OK);
 	check_abs(metrics.error[WEIGHT_NONE], r[3].error, 0, "eval repeats the error");
 	for (int n = 0; n < 4; n++)
 		fit_result_free(&r[n]);
 	assert_null(r[3].pwl);
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 static void lies_below_the_parametric_ndfs(void **state)

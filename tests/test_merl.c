@@ -235,8 +235,8 @@ static int count_above_horizon(enum bins bins)
 
 	for (int k = 0; k < 180; k++)
 		cos_phi[k] = bins_trig(bins, 0, 0, k).cos_phi;
-	for (int i = 0; i < SAMPLES_THETA_H; i++) {
-		for (int j = 0; j < SAMPLES_THETA_D; j++) {
+	for (int i = 0; i < MERL_THETA_H; i++) {
+		for (int j = 0; j < MERL_THETA_D; j++) {
 			const struct halfdiff_trig t = bins_trig(bins, i, j, 0);
 			for (int k = 0; k < 180; k++) {
 				const double even = t.cos_h * t.cos_d, odd = t.sin_h * t.sin_d * cos_phi[k];
@@ -258,57 +258,57 @@ static void test_entries_above_horizon(void **state)
 
 static void test_samples_alloc(void **state)
 {
-	struct samples samples;
+	struct measurement measurement;
 
 	(void)state;
 	for (int n = 180; n <= 360; n += 180) {
-		assert_int_equal(samples_alloc(&samples, n), STATUS_OK);
-		assert_int_equal(samples_count(&samples), 8100 * n);
-		for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-			assert_true(isnan(samples.value[c][0]));
-			assert_true(isnan(samples.value[c][samples_count(&samples) - 1]));
+		assert_int_equal(measurement_alloc(&measurement, n), STATUS_OK);
+		assert_int_equal(measurement_count(&measurement), 8100 * n);
+		for (int c = 0; c < MERL_CHANNELS; c++) {
+			assert_true(isnan(measurement.value[c][0]));
+			assert_true(isnan(measurement.value[c][measurement_count(&measurement) - 1]));
 		}
-		samples_free(&samples);
-		assert_null(samples.value[0]);
-		samples_free(&samples);
+		measurement_free(&measurement);
+		assert_null(measurement.value[0]);
+		measurement_free(&measurement);
 	}
 	static const int bad[] = {0, -180, 90, 181, 720, INT_MAX};
 	for (size_t b = 0; b < sizeof bad / sizeof *bad; b++) {
-		assert_int_equal(samples_alloc(&samples, bad[b]), STATUS_DOMAIN);
-		assert_null(samples.value[0]);
+		assert_int_equal(measurement_alloc(&measurement, bad[b]), STATUS_DOMAIN);
+		assert_null(measurement.value[0]);
 	}
 }
 
 /* A table with many magnitudes, the largest and smallest floats among them, and masked entries. Returns how many. */
-static size_t fill(struct samples *samples)
+static size_t fill(struct measurement *measurement)
 {
 	uint32_t random = 2385;
 	size_t masked = 0;
 
-	for (size_t e = 0; e < samples_count(samples); e++) {
-		for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+	for (size_t e = 0; e < measurement_count(measurement); e++) {
+		for (int c = 0; c < MERL_CHANNELS; c++) {
 			random = random * 1664525u + 1013904223u;
-			samples->value[c][e] = ldexpf((float)(random >> 8), (int)(random >> 24) % 60 - 50);
+			measurement->value[c][e] = ldexpf((float)(random >> 8), (int)(random >> 24) % 60 - 50);
 		}
 		if (e % 11 == 3) {
 			masked++;
-			for (int c = 0; c < SAMPLES_CHANNELS; c++)
-				samples->value[c][e] = NAN;
+			for (int c = 0; c < MERL_CHANNELS; c++)
+				measurement->value[c][e] = NAN;
 		}
 	}
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-		samples->value[c][0] = 0.0f;
-		samples->value[c][1] = FLT_MAX;
-		samples->value[c][2] = FLT_MIN;
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		measurement->value[c][0] = 0.0f;
+		measurement->value[c][1] = FLT_MAX;
+		measurement->value[c][2] = FLT_MIN;
 	}
 	return masked;
 }
 
-static void check_same(const struct samples *got, const struct samples *want)
+static void check_same(const struct measurement *got, const struct measurement *want)
 {
 	assert_int_equal(got->n_phi_d, want->n_phi_d);
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-		for (size_t e = 0; e < samples_count(want); e++) {
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		for (size_t e = 0; e < measurement_count(want); e++) {
 			const float g = got->value[c][e], w = want->value[c][e];
 			if (!(g == w || (isnan(g) && isnan(w))))
 				fail_msg("channel %d, entry %zu: got %.9g, expected %.9g", c, e, (double)g, (double)w);
@@ -318,11 +318,11 @@ static void check_same(const struct samples *got, const struct samples *want)
 
 static void round_trip(struct place *place, int n_phi_d)
 {
-	struct samples made, got = {0};
+	struct measurement made, got = {0};
 	struct error error = {{0}};
 	size_t size;
 
-	assert_int_equal(samples_alloc(&made, n_phi_d), STATUS_OK);
+	assert_int_equal(measurement_alloc(&made, n_phi_d), STATUS_OK);
 	const size_t masked = fill(&made);
 	const char *path = in(place, "table.binary");
 	if (merl_write(path, &made, &error) != STATUS_OK || merl_read(path, 2, &got, &error) != STATUS_OK)
@@ -331,13 +331,13 @@ static void round_trip(struct place *place, int n_phi_d)
 	assert_int_equal(got.n_negative, masked);
 	assert_int_equal(got.n_nonfinite, 0);
 	char *bytes = slurp(path, &size);
-	assert_int_equal(size, HEADER + 3 * 8 * samples_count(&made));
+	assert_int_equal(size, HEADER + 3 * 8 * measurement_count(&made));
 	assert_int_equal(got.file_size, size);
 	assert_int_equal(got.file_hash, XXH3_64bits(bytes, size));
 	assert_int_equal(place_files(place, false), 1);
 	free(bytes);
-	samples_free(&got);
-	samples_free(&made);
+	measurement_free(&got);
+	measurement_free(&made);
 }
 
 static void test_round_trip_180(void **state)
@@ -353,41 +353,41 @@ static void test_round_trip_360(void **state)
 /* The hash of tables of zeros, as other programs give it. */
 static void test_hash(void **state)
 {
-	struct samples samples;
+	struct measurement measurement;
 	const char *path = make_table(*state, "zero.binary", 90, 90, 180, SIZE_180);
 
-	assert_int_equal(merl_read(path, 2, &samples, NULL), STATUS_OK);
-	assert_int_equal(samples.file_hash, 0xcf6267e3a70330ca);
-	assert_true(samples.value[0][0] == 0.0f && samples.value[2][ENTRIES_180 - 1] == 0.0f);
-	samples_free(&samples);
+	assert_int_equal(merl_read(path, 2, &measurement, NULL), STATUS_OK);
+	assert_int_equal(measurement.file_hash, 0xcf6267e3a70330ca);
+	assert_true(measurement.value[0][0] == 0.0f && measurement.value[2][ENTRIES_180 - 1] == 0.0f);
+	measurement_free(&measurement);
 	path = make_table(*state, "zero.binary", 90, 90, 360, HEADER + 2 * (SIZE_180 - HEADER));
-	assert_int_equal(merl_read(path, 1, &samples, NULL), STATUS_OK);
-	assert_int_equal(samples.n_phi_d, 360);
-	assert_int_equal(samples.file_hash, 0x8e5ba5d4edf94254);
-	samples_free(&samples);
+	assert_int_equal(merl_read(path, 1, &measurement, NULL), STATUS_OK);
+	assert_int_equal(measurement.n_phi_d, 360);
+	assert_int_equal(measurement.file_hash, 0x8e5ba5d4edf94254);
+	measurement_free(&measurement);
 }
 
 /* Where numbers go and what they are multiplied by. */
 static void test_layout(void **state)
 {
-	struct samples samples;
+	struct measurement measurement;
 	const char *path = make_table(*state, "layout.binary", 90, 90, 180, SIZE_180);
 	const size_t entry = 7 + 180 * (12 + 90 * (size_t)61); /* phi_d 7, theta_d 12, theta_h 61 */
 
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+	for (int c = 0; c < MERL_CHANNELS; c++)
 		poke(path, c, entry, 2385.0 + c);
-	assert_int_equal(merl_read(path, 2, &samples, NULL), STATUS_OK);
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-		check_rel(samples.value[c][entry], (2385.0 + c) * scale[c], FLT_EPSILON, "scaled");
-		assert_true(samples.value[c][entry - 1] == 0.0f && samples.value[c][entry + 1] == 0.0f);
+	assert_int_equal(merl_read(path, 2, &measurement, NULL), STATUS_OK);
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		check_rel(measurement.value[c][entry], (2385.0 + c) * scale[c], FLT_EPSILON, "scaled");
+		assert_true(measurement.value[c][entry - 1] == 0.0f && measurement.value[c][entry + 1] == 0.0f);
 	}
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 enum verdict { VALID, NEGATIVE, NONFINITE };
 
 static const struct mask_case {
-	double number[SAMPLES_CHANNELS];
+	double number[MERL_CHANNELS];
 	enum verdict verdict;
 } mask_cases[] = {
 	{{0.0, 0.0, 0.0}, VALID},
@@ -423,21 +423,21 @@ static const char *make_masked(struct place *place)
 	const char *path = make_table(place, "masked.binary", 90, 90, 180, SIZE_180);
 
 	for (int n = 0; n < N_MASK_CASES; n++)
-		for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		for (int c = 0; c < MERL_CHANNELS; c++)
 			poke(path, c, mask_entry(n), mask_cases[n].number[c]);
 	return path;
 }
 
 static void test_masking(void **state)
 {
-	struct samples samples;
+	struct measurement measurement;
 	size_t count[3] = {0};
 
-	assert_int_equal(merl_read(make_masked(*state), 2, &samples, NULL), STATUS_OK);
+	assert_int_equal(merl_read(make_masked(*state), 2, &measurement, NULL), STATUS_OK);
 	for (int n = 0; n < N_MASK_CASES; n++) {
 		count[mask_cases[n].verdict]++;
-		for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-			const float got = samples.value[c][mask_entry(n)];
+		for (int c = 0; c < MERL_CHANNELS; c++) {
+			const float got = measurement.value[c][mask_entry(n)];
 			const double want = mask_cases[n].number[c] * scale[c];
 			if (isnan(got) != (mask_cases[n].verdict != VALID))
 				fail_msg("case %d, channel %d: got %g", n, c, (double)got);
@@ -448,24 +448,24 @@ static void test_masking(void **state)
 			assert_false(signbit(got));
 		}
 	}
-	assert_int_equal(samples.n_negative, count[NEGATIVE]);
-	assert_int_equal(samples.n_nonfinite, count[NONFINITE]);
+	assert_int_equal(measurement.n_negative, count[NEGATIVE]);
+	assert_int_equal(measurement.n_nonfinite, count[NONFINITE]);
 	for (int n = 0; n + 1 < N_MASK_CASES; n++) /* and nothing else */
-		assert_true(samples.value[1][mask_entry(n) + 1] == 0.0f);
-	samples_free(&samples);
+		assert_true(measurement.value[1][mask_entry(n) + 1] == 0.0f);
+	measurement_free(&measurement);
 }
 
 static void test_threads_change_nothing(void **state)
 {
 	static const int threads[] = {2, 3, 8, 1000, 0, -5};
-	struct samples one, got;
+	struct measurement one, got;
 	struct place *place = *state;
 
-	assert_int_equal(samples_alloc(&one, 180), STATUS_OK);
+	assert_int_equal(measurement_alloc(&one, 180), STATUS_OK);
 	fill(&one);
 	assert_int_equal(merl_write(in(place, "table.binary"), &one, NULL), STATUS_OK);
-	samples_free(&one);
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+	measurement_free(&one);
+	for (int c = 0; c < MERL_CHANNELS; c++)
 		for (size_t e = 0; e < 20; e++)
 			poke(place->path, c, e * 72899 + (size_t)c, e % 2 ? INFINITY : -1.0);
 	assert_int_equal(merl_read(place->path, 1, &one, NULL), STATUS_OK);
@@ -476,9 +476,9 @@ static void test_threads_change_nothing(void **state)
 		assert_int_equal(got.n_negative, one.n_negative);
 		assert_int_equal(got.n_nonfinite, one.n_nonfinite);
 		assert_int_equal(got.file_hash, one.file_hash);
-		samples_free(&got);
+		measurement_free(&got);
 	}
-	samples_free(&one);
+	measurement_free(&one);
 }
 
 /* --- bad input -------------------------------------------------------------------------------------------------- */
@@ -486,19 +486,19 @@ static void test_threads_change_nothing(void **state)
 /* Reading has to fail with this status, in one line that has `words` in it, and leave no table. */
 static void check_refused(const char *path, enum status status, const char *words)
 {
-	struct samples samples = {.n_phi_d = 7};
+	struct measurement measurement = {.n_phi_d = 7};
 	struct error error = {{0}};
 
 	assert_non_null(path);
-	const enum status got = merl_read(path, 2, &samples, &error);
+	const enum status got = merl_read(path, 2, &measurement, &error);
 	if (got == STATUS_OK)
-		samples_free(&samples);
+		measurement_free(&measurement);
 	if (got != status || strncmp(error.text, "cannot read '", 13) != 0 || !strstr(error.text, words))
 		fail_msg("%s: got status %d '%s', expected %d and '%s'", path, got, error.text, status, words);
 	check_one_line(error.text);
-	assert_int_equal(samples.n_phi_d, 0);
-	assert_null(samples.value[0]);
-	assert_int_equal(merl_read(path, 1, &samples, NULL), status);
+	assert_int_equal(measurement.n_phi_d, 0);
+	assert_null(measurement.value[0]);
+	assert_int_equal(merl_read(path, 1, &measurement, NULL), status);
 }
 
 static void test_refuses_what_is_no_file(void **state)
@@ -648,22 +648,22 @@ static void test_reading_goes_wrong(void **state)
 	meddle.at_call = 5;
 	meddle.grow = true;
 	meddle.grow_path = path;
-	struct samples samples;
+	struct measurement measurement;
 	struct error error;
-	assert_int_equal(merl_read(path, 2, &samples, &error), STATUS_IO);
+	assert_int_equal(merl_read(path, 2, &measurement, &error), STATUS_IO);
 	assert_non_null(strstr(error.text, "it changed while being read"));
 }
 
 static void test_reading_in_pieces(void **state)
 {
-	struct samples samples;
+	struct measurement measurement;
 	const char *path = make_table(*state, "x.binary", 90, 90, 180, SIZE_180);
 
 	meddle.pieces = true;
-	assert_int_equal(merl_read(path, 2, &samples, NULL), STATUS_OK);
+	assert_int_equal(merl_read(path, 2, &measurement, NULL), STATUS_OK);
 	assert_true(meddle.calls > 400);
-	assert_int_equal(samples.file_hash, 0xcf6267e3a70330ca);
-	samples_free(&samples);
+	assert_int_equal(measurement.file_hash, 0xcf6267e3a70330ca);
+	measurement_free(&measurement);
 }
 
 static void test_odd_names(void **state)
@@ -678,10 +678,10 @@ static void test_odd_names(void **state)
 	memcpy(name + sizeof name - 5, ".bin", 4);
 	check_refused(make_table(place, name, 90, 90, 180, 4096), STATUS_FORMAT, "nn.bin': expected 34992012 bytes");
 	make_table(place, name, 90, 90, 180, SIZE_180);
-	struct samples samples;
-	assert_int_equal(merl_read(place->path, 1, &samples, NULL), STATUS_OK);
-	assert_int_equal(merl_write(place->path, &samples, NULL), STATUS_OK);
-	samples_free(&samples);
+	struct measurement measurement;
+	assert_int_equal(merl_read(place->path, 1, &measurement, NULL), STATUS_OK);
+	assert_int_equal(merl_write(place->path, &measurement, NULL), STATUS_OK);
+	measurement_free(&measurement);
 }
 
 static void test_text_quote(void **state)
@@ -843,51 +843,51 @@ static void test_atomic_leaves_special_files(void **state)
 }
 
 /* Writing a table there has to fail with STATUS_IO and these words. */
-static void check_not_written(const char *path, const struct samples *samples, const char *words)
+static void check_not_written(const char *path, const struct measurement *measurement, const char *words)
 {
 	struct error error = {{0}};
-	const enum status status = merl_write(path, samples, &error);
+	const enum status status = merl_write(path, measurement, &error);
 
 	if (status != STATUS_IO || strncmp(error.text, "cannot write '", 14) != 0 || !strstr(error.text, words))
 		fail_msg("%s: got status %d '%s', expected '%s'", path, status, error.text, words);
 	check_one_line(error.text);
 }
 
-static struct samples zero_table(void)
+static struct measurement zero_table(void)
 {
-	struct samples samples;
+	struct measurement measurement;
 
-	assert_int_equal(samples_alloc(&samples, 180), STATUS_OK);
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		memset(samples.value[c], 0, samples_count(&samples) * sizeof *samples.value[c]);
-	return samples;
+	assert_int_equal(measurement_alloc(&measurement, 180), STATUS_OK);
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		memset(measurement.value[c], 0, measurement_count(&measurement) * sizeof *measurement.value[c]);
+	return measurement;
 }
 
 static void test_write_where_nothing_can_be(void **state)
 {
 	struct place *place = *state;
-	struct samples samples = zero_table();
+	struct measurement measurement = zero_table();
 
-	check_not_written(in(place, "missing/x.binary"), &samples, strerror(ENOENT));
-	check_not_written(in(place, "missing\n/x.binary"), &samples, "missing\\x0a/x.binary': ");
-	check_not_written(in(place, "new/"), &samples, strerror(EISDIR));
-	check_not_written(place->dir, &samples, strerror(EISDIR));
-	check_not_written("", &samples, strerror(ENOENT));
+	check_not_written(in(place, "missing/x.binary"), &measurement, strerror(ENOENT));
+	check_not_written(in(place, "missing\n/x.binary"), &measurement, "missing\\x0a/x.binary': ");
+	check_not_written(in(place, "new/"), &measurement, strerror(EISDIR));
+	check_not_written(place->dir, &measurement, strerror(EISDIR));
+	check_not_written("", &measurement, strerror(ENOENT));
 	make_file(place, "file", "x", 1, 1);
-	check_not_written(in(place, "file/x.binary"), &samples, strerror(ENOTDIR));
+	check_not_written(in(place, "file/x.binary"), &measurement, strerror(ENOTDIR));
 	assert_int_equal(place_files(place, false), 1);
 	if (access("/dev/full", W_OK) == 0)
-		check_not_written("/dev/full", &samples, strerror(ENOSPC));
-	samples_free(&samples);
+		check_not_written("/dev/full", &measurement, strerror(ENOSPC));
+	measurement_free(&measurement);
 }
 
 static void write_without_permission(struct place *place)
 {
-	struct samples samples = zero_table();
+	struct measurement measurement = zero_table();
 
-	check_not_written(in(place, "new.binary"), &samples, strerror(EACCES));
-	check_not_written(in(place, "old.binary"), &samples, strerror(EACCES));
-	samples_free(&samples);
+	check_not_written(in(place, "new.binary"), &measurement, strerror(EACCES));
+	check_not_written(in(place, "old.binary"), &measurement, strerror(EACCES));
+	measurement_free(&measurement);
 }
 
 static void test_write_without_permission(void **state)
@@ -905,10 +905,10 @@ static void test_write_without_permission(void **state)
 
 static void write_read_only(struct place *place)
 {
-	struct samples samples = zero_table();
+	struct measurement measurement = zero_table();
 
-	check_not_written(in(place, "old.binary"), &samples, strerror(EACCES));
-	samples_free(&samples);
+	check_not_written(in(place, "old.binary"), &measurement, strerror(EACCES));
+	measurement_free(&measurement);
 }
 
 /* The directory would allow to replace it: a read-only file is meant to stay. */
@@ -927,7 +927,7 @@ static void test_write_over_read_only(void **state)
 static void test_write_when_full(void **state)
 {
 	struct place *place = *state;
-	struct samples samples = zero_table();
+	struct measurement measurement = zero_table();
 	struct rlimit old, low;
 	struct atomic_file file;
 	struct error error;
@@ -938,7 +938,7 @@ static void test_write_when_full(void **state)
 	low = old;
 	low.rlim_cur = 1000000;
 	assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
-	check_not_written(in(place, "old.binary"), &samples, strerror(EFBIG));
+	check_not_written(in(place, "old.binary"), &measurement, strerror(EFBIG));
 
 	/* The same for one who leaves all checking to the commit: lines lost in the middle, the stream fine at the end.
 	 */
@@ -951,7 +951,7 @@ static void test_write_when_full(void **state)
 	assert_non_null(strstr(error.text, "cannot write '"));
 	check_content(in(place, "old.binary"), "old");
 	assert_int_equal(place_files(place, false), 1);
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 static void test_rename_fails(void **state)

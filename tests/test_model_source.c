@@ -81,7 +81,7 @@ static void a_row_is_the_model_that_was_fitted(void **state)
 	assert_int_equal(model_source_kind(&options), SOURCE_FIT);
 	must_read(&options, "m.binary", &fitted);
 	assert_int_equal(fitted.n, 2);
-	assert_non_null(fitted.samples.value[0]);
+	assert_non_null(fitted.measurement.value[0]);
 	assert_string_equal(fitted.model[0].material, "m");
 	assert_string_equal(fitted.model[0].path, "m.binary");
 	assert_non_null(fitted.model[1].pwl);
@@ -92,7 +92,7 @@ static void a_row_is_the_model_that_was_fitted(void **state)
 	assert_int_equal(model_source_kind(&options), SOURCE_ROWS);
 	must_read(&options, "m.binary", &rows);
 	assert_int_equal(rows.n, 2);
-	assert_null(rows.samples.value[0]);
+	assert_null(rows.measurement.value[0]);
 	for (size_t i = 0; i < 2; i++) {
 		same_model(&rows.model[i], &fitted.model[i]);
 		assert_true(rows.model[i].error == fitted.model[i].error);
@@ -168,13 +168,13 @@ static void what_cannot_be_had_is_told(void **state)
 static int set_up(void **state)
 {
 	const struct cook_torrance model = make_model("std", 0.3, 1.9, 1.5);
-	struct samples samples = make_table(&model, 180, BINS_NODE, 0.1);
+	struct measurement measurement = make_table(&model, 180, BINS_NODE, 0.1);
 	struct error error = {""};
 
 	(void)state;
-	if (!mkdtemp(directory) || chdir(directory) || merl_write("m.binary", &samples, &error) != STATUS_OK)
+	if (!mkdtemp(directory) || chdir(directory) || merl_write("m.binary", &measurement, &error) != STATUS_OK)
 		return -1;
-	samples_free(&samples);
+	measurement_free(&measurement);
 	return 0;
 }
 

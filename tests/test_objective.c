@@ -18,14 +18,14 @@ static struct fit_options options_with(enum gaf gaf, enum weight weight, enum bi
 }
 
 /* Masks some entries, whole and half pairs, as a damaged file would have them. */
-static void damage(struct samples *samples)
+static void damage(struct measurement *measurement)
 {
 	unsigned seed = 5;
 
-	for (size_t e = 0; e < samples_count(samples); e++)
+	for (size_t e = 0; e < measurement_count(measurement); e++)
 		if (random_unit(&seed) < 0.03)
 			for (int c = 0; c < 3; c++)
-				samples->value[c][e] = NAN;
+				measurement->value[c][e] = NAN;
 }
 
 struct reference {
@@ -44,7 +44,7 @@ static double plain_cell(int i, int j)
 }
 
 /* Everything from definitions: exact model values, plain sums. */
-static struct reference brute_force(const struct samples *samples, const struct cook_torrance *model,
+static struct reference brute_force(const struct measurement *measurement, const struct cook_torrance *model,
 				    const struct fit_options *o)
 {
 	double up[WEIGHT_COUNT] = {0}, down[WEIGHT_COUNT] = {0}, square = 0, root = 0, log_sum = 0;
@@ -52,21 +52,21 @@ static struct reference brute_force(const struct samples *samples, const struct 
 	size_t n_sum = 0;
 
 #pragma omp parallel for reduction(+ : up, down, square, root, log_sum, n_sum) schedule(dynamic)
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		for (int j = 0; j < SAMPLES_THETA_D; j++)
-			for (int k = 0; k < samples->n_phi_d; k++) {
-				const size_t at = samples_at(samples->n_phi_d, i, j, k);
+	for (int i = 0; i < MERL_THETA_H; i++)
+		for (int j = 0; j < MERL_THETA_D; j++)
+			for (int k = 0; k < measurement->n_phi_d; k++) {
+				const size_t at = measurement_at(measurement->n_phi_d, i, j, k);
 				const double deg = 180 / M_PI;
 				struct vec3 wi, wo;
 				double f[3];
 
 				halfdiff_trig_dirs(bins_trig(o->bins, i, j, k), &wi, &wo);
-				if (wi.z <= 1e-9 || wo.z <= 1e-9 || isnan(samples->value[0][at]) ||
+				if (wi.z <= 1e-9 || wo.z <= 1e-9 || isnan(measurement->value[0][at]) ||
 				    acos(wi.z) * deg > o->max_theta + 1e-9 || acos(wo.z) * deg > o->max_theta + 1e-9)
 					continue;
 				cook_torrance_f(model, wi, wo, f);
 				for (int c = 0; c < 3; c++) {
-					const double m = (double)samples->value[c][at], cc = wi.z * wo.z,
+					const double m = (double)measurement->value[c][at], cc = wi.z * wo.z,
 						     d = fabs(m - f[c]);
 					const double w[] = {1, cc, cc * plain_cell(i, j)};
 
@@ -90,32 +90,33 @@ static struct reference brute_force(const struct samples *samples, const struct 
 }
 
 /* E of given kd and ks by the kernel, pass by pass. */
-static double kernel_error(const struct kernel *kernel, const struct geometry *geometry, const struct samples *samples,
-			   const struct cook_torrance *model, const struct fit_options *o, enum masking_density density)
+static double kernel_error(const struct kernel *kernel, const struct geometry *geometry,
+			   const struct measurement *measurement, const struct cook_torrance *model,
+			   const struct fit_options *o, enum masking_density density)
 {
 	const struct shape shape = {model->ndf.sigma_x, model->ndf.gamma, model->n, 0};
 	struct objective objective;
-	struct table table;
+	struct sample_set table;
 	double error = 0, sum = 0;
 
-	assert_int_equal(table_init(&table, geometry, samples, 2), STATUS_OK);
+	assert_int_equal(sample_set_init(&table, geometry, measurement, 2), STATUS_OK);
 	assert_int_equal(objective_init(&objective, &table, o, model->ndf.class, 1, density), STATUS_OK);
 	objective.kernel = kernel;
 	assert_int_equal(objective_lobe(&objective, &shape), STATUS_OK);
 	for (int c = 0; c < 3; c++) {
 		for (int b = 0; b < table.n_blocks; b++) {
 			const size_t at = (size_t)b * KERNEL_BLOCK;
-			const struct kernel_look look = {model->kd[c] / M_PI, model->ks[c], 0.05, 1e-3};
+			const struct kernel_evaluation look = {model->kd[c] / M_PI, model->ks[c], 0.05, 1e-3};
 			struct kernel_sums sums;
 
-			kernel->pass(b < table.n_pair_blocks ? 2 : 1, table_value(&table, b, c), table.w + at,
+			kernel->pass(b < table.n_pair_blocks ? 2 : 1, sample_set_value(&table, b, c), table.w + at,
 				     objective.s + at, &look, &sums);
 			error += sums.error;
 		}
 		sum += table.sum[c];
 	}
 	objective_free(&objective);
-	table_free(&table);
+	sample_set_free(&table);
 	return error / sum;
 }
 
@@ -142,7 +143,7 @@ static void check_setting(const struct setting *s)
 {
 	const struct fit_options o = options_with(s->gaf, s->weight, s->bins, s->max_theta);
 	struct cook_torrance truth = make_model(s->ndf, s->sigma, s->gamma, s->n), model;
-	struct samples samples;
+	struct measurement measurement;
 	struct geometry geometry;
 	struct fit_metrics metrics;
 	char label[64];
@@ -155,12 +156,12 @@ static void check_setting(const struct setting *s)
 		model.kd[c] = 0.7 * truth.kd[c];
 		model.ks[c] = (double)(float)(1.2 * truth.ks[c]);
 	}
-	samples = make_table(&truth, s->n_phi_d, s->bins, 0.2);
-	damage(&samples);
-	const struct reference want = brute_force(&samples, &model, &o);
+	measurement = make_table(&truth, s->n_phi_d, s->bins, 0.2);
+	damage(&measurement);
+	const struct reference want = brute_force(&measurement, &model, &o);
 
 	assert_int_equal(geometry_init(&geometry, s->n_phi_d, &o), STATUS_OK);
-	assert_int_equal(metrics_compute(&geometry, &samples, &model, 2, &metrics), STATUS_OK);
+	assert_int_equal(metrics_compute(&geometry, &measurement, &model, 2, &metrics), STATUS_OK);
 	assert_int_equal(metrics.samples, want.n);
 	for (int w = 0; w < WEIGHT_COUNT; w++) {
 		snprintf(label, sizeof label, "%s error %s", s->ndf, weight_name((enum weight)w));
@@ -170,16 +171,16 @@ static void check_setting(const struct setting *s)
 	check_rel(metrics.rms_cube_root, want.rms_cube_root, 2e-6, "rms_cube_root");
 	check_rel(metrics.log_error, want.log_error, 1e-7, "log_error");
 
-	const double coarse = kernel_error(kernel_pick(), &geometry, &samples, &model, &o, MASKING_COARSE);
-	const double fine = kernel_error(kernel_pick(), &geometry, &samples, &model, &o, MASKING_FINE);
-	const double plain = kernel_error(&kernel_plain, &geometry, &samples, &model, &o, MASKING_FINE);
+	const double coarse = kernel_error(kernel_pick(), &geometry, &measurement, &model, &o, MASKING_COARSE);
+	const double fine = kernel_error(kernel_pick(), &geometry, &measurement, &model, &o, MASKING_FINE);
+	const double plain = kernel_error(&kernel_plain, &geometry, &measurement, &model, &o, MASKING_FINE);
 
 	/* Two G1 of 4e-6 each, times the ratio of model to difference, which is 5 here. */
 	check_rel(coarse, want.error[s->weight], 4e-5, "kernel, coarse G1");
 	check_rel(fine, want.error[s->weight], 1e-7, "kernel, fine G1");
 	assert_true(plain == fine);
 	geometry_free(&geometry);
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 static void kernel_and_metrics_match_the_reference(void **state)
@@ -205,7 +206,7 @@ static void entries_above_the_horizon(void **state)
 		int k[4];
 
 		assert_int_equal(geometry_init(&geometry, want[n].n_phi_d, &o), STATUS_OK);
-		for (int slot = 0; slot < geometry.n_slots; slot++)
+		for (int slot = 0; slot < geometry.n_samples; slot++)
 			count += (size_t)geometry_members(&geometry, slot, k);
 		assert_int_equal(count, want[n].count);
 		geometry_free(&geometry);
@@ -218,17 +219,17 @@ static void thinned_tables_estimate_the_error(void **state)
 	const struct fit_options o = options_with(GAF_UNCORRELATED, WEIGHT_NONE, BINS_NODE, 90);
 	const struct cook_torrance truth = make_model("std", 0.05, 1.7, 1.6);
 	const struct shape shapes[] = {{0.05, 2, 1.6, 0}, {0.2, 2, 1.2, 0}, {0.01, 2, 20, 0}};
-	struct samples samples = make_table(&truth, 180, BINS_NODE, 0.3);
+	struct measurement measurement = make_table(&truth, 180, BINS_NODE, 0.3);
 	struct geometry geometry;
-	struct table full, thin;
+	struct sample_set full, thin;
 	struct objective on_full, on_thin;
 	struct linear linear;
 
 	(void)state;
 	assert_int_equal(geometry_init(&geometry, 180, &o), STATUS_OK);
-	assert_int_equal(table_init(&full, &geometry, &samples, 2), STATUS_OK);
-	assert_int_equal(table_thin(&thin, &full, 5000), STATUS_OK);
-	check_between(thin.n_slots, 4900, 5100, "slots");
+	assert_int_equal(sample_set_init(&full, &geometry, &measurement, 2), STATUS_OK);
+	assert_int_equal(sample_set_thin(&thin, &full, 5000), STATUS_OK);
+	check_between(thin.n_samples, 4900, 5100, "slots");
 	assert_int_equal(objective_init(&on_full, &full, &o, ndf_find("ggx"), 1, MASKING_COARSE), STATUS_OK);
 	assert_int_equal(objective_init(&on_thin, &thin, &o, ndf_find("ggx"), 1, MASKING_COARSE), STATUS_OK);
 	for (size_t n = 0; n < 3; n++) {
@@ -240,27 +241,27 @@ static void thinned_tables_estimate_the_error(void **state)
 	}
 	objective_free(&on_full);
 	objective_free(&on_thin);
-	table_free(&full);
-	table_free(&thin);
+	sample_set_free(&full);
+	sample_set_free(&thin);
 	geometry_free(&geometry);
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 static void nothing_to_fit_is_said(void **state)
 {
 	const struct fit_options o = options_with(GAF_UNCORRELATED, WEIGHT_NONE, BINS_NODE, 90);
-	struct samples samples;
+	struct measurement measurement;
 	struct geometry geometry;
-	struct table table;
+	struct sample_set table;
 
 	(void)state;
 	assert_int_equal(geometry_init(&geometry, 180, &o), STATUS_OK);
-	assert_int_equal(samples_alloc(&samples, 180), STATUS_OK);
-	assert_int_equal(table_init(&table, &geometry, &samples, 1), STATUS_NO_DATA);
+	assert_int_equal(measurement_alloc(&measurement, 180), STATUS_OK);
+	assert_int_equal(sample_set_init(&table, &geometry, &measurement, 1), STATUS_NO_DATA);
 	for (int c = 0; c < 3; c++)
-		memset(samples.value[c], 0, samples_count(&samples) * sizeof *samples.value[c]);
-	assert_int_equal(table_init(&table, &geometry, &samples, 1), STATUS_NO_DATA);
-	samples_free(&samples);
+		memset(measurement.value[c], 0, measurement_count(&measurement) * sizeof *measurement.value[c]);
+	assert_int_equal(sample_set_init(&table, &geometry, &measurement, 1), STATUS_NO_DATA);
+	measurement_free(&measurement);
 	geometry_free(&geometry);
 }
 

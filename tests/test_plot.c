@@ -16,20 +16,20 @@
 
 /* A noisy table that several tests look at, and its model. */
 #define NOISE 0.2
-static struct samples measured_table;
+static struct measurement measured_table;
 static struct cook_torrance table_model;
 
-static void mask_entry(struct samples *samples, int i, int j, int k)
+static void mask_entry(struct measurement *measurement, int i, int j, int k)
 {
 	for (int c = 0; c < 3; c++)
-		samples->value[c][samples_at(samples->n_phi_d, i, j, k)] = NAN;
+		measurement->value[c][measurement_at(measurement->n_phi_d, i, j, k)] = NAN;
 }
 
 /* The rows of the map add up to E, under each weight, bins and G; a single row is what the model itself says. */
 static void the_map_adds_up_to_the_error(void **state)
 {
 	(void)state;
-	static struct metrics_row rows[TABLE_ROWS];
+	static struct metrics_row rows[MERL_ROWS];
 	for (int k = 0; k < measured_table.n_phi_d; k++)
 		mask_entry(&measured_table, 30, 20, k);
 	for (int run = 0; run < 4; run++) {
@@ -46,22 +46,22 @@ static void the_map_adds_up_to_the_error(void **state)
 		size_t n = 0;
 		assert_int_equal(fit_eval(&measured_table, &model, &options, &metrics, &error), STATUS_OK);
 		assert_int_equal(error_map_make(&measured_table, &model, &options, rows), STATUS_OK);
-		for (int r = 0; r < TABLE_ROWS; r++) {
+		for (int r = 0; r < MERL_ROWS; r++) {
 			difference += rows[r].difference;
 			measured += rows[r].measured;
 			n += rows[r].samples;
 		}
 		check_rel(difference / measured, metrics.error[options.weight], 1e-12, "sum of the map");
 		assert_int_equal(n, metrics.samples);
-		assert_int_equal(rows[30 * SAMPLES_THETA_D + 20].samples, 0);
-		assert_true(isnan(error_map_error(&rows[30 * SAMPLES_THETA_D + 20])));
+		assert_int_equal(rows[30 * MERL_THETA_D + 20].samples, 0);
+		assert_true(isnan(error_map_error(&rows[30 * MERL_THETA_D + 20])));
 	}
 }
 
 static void a_row_of_the_map_is_what_the_model_says(void **state)
 {
 	(void)state;
-	static struct metrics_row rows[TABLE_ROWS];
+	static struct metrics_row rows[MERL_ROWS];
 	enum { I = 41, J = 55 };
 	const struct cook_torrance model = make_model("std", 0.19, 2.385, 1.5);
 	const struct fit_options options = fit_options_default();
@@ -72,13 +72,13 @@ static void a_row_of_the_map_is_what_the_model_says(void **state)
 		halfdiff_trig_dirs(bins_trig(BINS_NODE, I, J, k), &wi, &wo);
 		cook_torrance_f(&model, wi, wo, f);
 		for (int c = 0; c < 3 && wi.z > 1e-9 && wo.z > 1e-9; c++) {
-			const double m = (double)measured_table.value[c][samples_at(180, I, J, k)];
+			const double m = (double)measured_table.value[c][measurement_at(180, I, J, k)];
 			difference += fabs(m - f[c]);
 			measured += m;
 		}
 	}
 	assert_int_equal(error_map_make(&measured_table, &model, &options, rows), STATUS_OK);
-	check_rel(error_map_error(&rows[I * SAMPLES_THETA_D + J]), difference / measured, 1e-7, "error of a row");
+	check_rel(error_map_error(&rows[I * MERL_THETA_D + J]), difference / measured, 1e-7, "error of a row");
 	const struct metrics_row perfect = {0, 0, 3}, black = {2, 2, 3}, dark = {1, 0, 3};
 	check_abs(error_map_error(&perfect), 0, 0, "nothing measured, nothing modelled");
 	check_abs(error_map_error(&black), 1, 0, "a black model");
@@ -94,15 +94,15 @@ static void the_ndf_is_read_off_the_table(void **state)
 		struct measured_ndf ndf;
 		truth.gaf = model.gaf = GAF_V_GROOVE;
 		model.ndf = make_model("beckmann", 0.4, INFINITY, 1.5).ndf;
-		struct samples samples = make_table(&truth, 180, (enum bins)bins, 0);
-		assert_int_equal(measured_ndf_make(&samples, &model, (enum bins)bins, &ndf), STATUS_OK);
+		struct measurement measurement = make_table(&truth, 180, (enum bins)bins, 0);
+		assert_int_equal(measured_ndf_make(&measurement, &model, (enum bins)bins, &ndf), STATUS_OK);
 		for (int i = 0; i < 84; i++) {
 			const struct halfdiff_trig h = bins_trig((enum bins)bins, i, 0, 0);
 			check_rel(ndf.D[i], ndf_D(&truth.ndf, (struct vec3){h.sin_h, 0, h.cos_h}), 2e-5, "D");
 		}
 		assert_true(isnan(ndf.D[89])); /* steeper than 80 degrees */
 		measured_ndf_free(&ndf);
-		samples_free(&samples);
+		measurement_free(&measurement);
 	}
 }
 
@@ -115,11 +115,11 @@ static void a_perfect_fit_reads_itself(void **state)
 		struct cook_torrance model = make_model(g ? "ggx" : "std", 0.21, 1.8, 1.5);
 		struct measured_ndf ndf;
 		model.gaf = gaf[g];
-		struct samples samples = make_table(&model, 180, BINS_NODE, 0);
-		for (int j = 0; j < SAMPLES_THETA_D; j++)
+		struct measurement measurement = make_table(&model, 180, BINS_NODE, 0);
+		for (int j = 0; j < MERL_THETA_D; j++)
 			for (int k = 0; k < 180; k++)
-				mask_entry(&samples, 33, j, k);
-		assert_int_equal(measured_ndf_make(&samples, &model, BINS_NODE, &ndf), STATUS_OK);
+				mask_entry(&measurement, 33, j, k);
+		assert_int_equal(measured_ndf_make(&measurement, &model, BINS_NODE, &ndf), STATUS_OK);
 		assert_true(isnan(ndf.D[33]));
 		check_rel(ndf.D[34], ndf_D(&model.ndf, vec3_from_spherical_deg(34 * 34 / 90.0, 0)), 2e-5, "D");
 		check_rel(ndf.scale, 1, 2e-3, "scale");
@@ -128,7 +128,7 @@ static void a_perfect_fit_reads_itself(void **state)
 			check_abs(pwl_G1(&ndf.pwl, w), ndf_G1(&model.ndf, w), 2e-3, "G1");
 		}
 		measured_ndf_free(&ndf);
-		samples_free(&samples);
+		measurement_free(&measurement);
 	}
 }
 
@@ -136,27 +136,27 @@ static void a_perfect_fit_reads_itself(void **state)
 static void a_dip_of_a_free_form_raises_no_tail(void **state)
 {
 	(void)state;
-	enum { NODES = SAMPLES_THETA_H + 1 };
+	enum { NODES = MERL_THETA_H + 1 };
 	struct cook_torrance truth = make_model("ggx", 0.3, 2, 1.5), model = truth;
 	double theta[NODES], value[NODES];
 	struct measured_ndf ndf;
 	struct pwl pwl;
 	truth.gaf = model.gaf = GAF_V_GROOVE;
 	for (int i = 0; i < NODES; i++) {
-		theta[i] = i < SAMPLES_THETA_H ? i * i / 90.0 * M_PI / 180 : M_PI / 2;
+		theta[i] = i < MERL_THETA_H ? i * i / 90.0 * M_PI / 180 : M_PI / 2;
 		const bool dip = theta[i] > 1.3 && theta[i] < 1.4;
 		value[i] = ndf_D(&truth.ndf, (struct vec3){sin(theta[i]), 0, cos(theta[i])}) / (dip ? 100 : 1);
 	}
 	assert_int_equal(pwl_init(&pwl, NODES, theta, value, NULL), STATUS_OK);
 	ndf_from_pwl(&model.ndf, &pwl);
-	struct samples samples = make_table(&truth, 180, BINS_NODE, 0);
-	assert_int_equal(measured_ndf_make(&samples, &model, BINS_NODE, &ndf), STATUS_OK);
+	struct measurement measurement = make_table(&truth, 180, BINS_NODE, 0);
+	assert_int_equal(measured_ndf_make(&measurement, &model, BINS_NODE, &ndf), STATUS_OK);
 	for (int a = 5; a < 90; a += 7) {
 		const struct vec3 w = vec3_from_spherical_deg(a, 0);
 		check_abs(pwl_G1(&ndf.pwl, w), ndf_G1(&truth.ndf, w), 0.02, "G1");
 	}
 	measured_ndf_free(&ndf);
-	samples_free(&samples);
+	measurement_free(&measurement);
 	pwl_free(&pwl);
 }
 
@@ -165,7 +165,7 @@ static void no_ndf_where_there_is_none(void **state)
 	(void)state;
 	struct cook_torrance model = table_model;
 	struct measured_ndf ndf;
-	struct samples samples;
+	struct measurement measurement;
 	for (int c = 0; c < 3; c++)
 		model.ks[c] = 0;
 	assert_int_equal(measured_ndf_make(&measured_table, &model, BINS_NODE, &ndf), STATUS_NO_DATA);
@@ -175,10 +175,10 @@ static void no_ndf_where_there_is_none(void **state)
 		model.kd[c] = 1e6;
 	}
 	assert_int_equal(measured_ndf_make(&measured_table, &model, BINS_NODE, &ndf), STATUS_NO_DATA);
-	assert_int_equal(samples_alloc(&samples, 180), STATUS_OK);
-	assert_int_equal(measured_ndf_make(&samples, &model, BINS_NODE, &ndf), STATUS_NO_DATA);
+	assert_int_equal(measurement_alloc(&measurement, 180), STATUS_OK);
+	assert_int_equal(measured_ndf_make(&measurement, &model, BINS_NODE, &ndf), STATUS_NO_DATA);
 	measured_ndf_free(&ndf);
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 static void slices_are_the_table(void **state)
@@ -474,7 +474,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-	samples_free(&measured_table);
+	measurement_free(&measured_table);
 	return leave_directory(state);
 }
 

@@ -468,13 +468,14 @@ static void tables_are_interpolated(void **state)
 	(void)state;
 	for (int b = 0; b < BINS_COUNT; b++)
 		for (int n_phi = 180; n_phi <= 360; n_phi += 180) {
-			struct samples samples;
+			struct measurement measurement;
 			struct measured measured;
-			assert_int_equal(samples_alloc(&samples, n_phi), STATUS_OK);
+			assert_int_equal(measurement_alloc(&measurement, n_phi), STATUS_OK);
 			for (int e = 0; e < 90 * 90 * n_phi; e++)
-				samples.value[1][e] = samples.value[0][e] = samples.value[2][e] = (float)smooth_value(
-					bins_angles((enum bins)b, e / n_phi / 90, e / n_phi % 90, e % n_phi));
-			assert_int_equal(measured_init(&measured, &samples, (enum bins)b), STATUS_OK);
+				measurement.value[1][e] = measurement.value[0][e] = measurement.value[2][e] =
+					(float)smooth_value(
+						bins_angles((enum bins)b, e / n_phi / 90, e / n_phi % 90, e % n_phi));
+			assert_int_equal(measured_init(&measured, &measurement, (enum bins)b), STATUS_OK);
 			uint64_t seed = 1;
 			for (int n = 0; n < 3000; n++) {
 				const bool at_entry = n % 2;
@@ -499,35 +500,35 @@ static void tables_are_interpolated(void **state)
 				check_rel(back[1], f[1], 1e-6, "reciprocal");
 			}
 			measured_free(&measured);
-			samples_free(&samples);
+			measurement_free(&measurement);
 		}
 }
 
 static void gaps_take_their_neighbours_value(void **state)
 {
 	(void)state;
-	struct samples samples;
+	struct measurement measurement;
 	struct measured measured;
-	assert_int_equal(samples_alloc(&samples, 180), STATUS_OK);
+	assert_int_equal(measurement_alloc(&measurement, 180), STATUS_OK);
 	/* Only theta_d index 3 and below is measured, nothing at theta_h index 5 and k = 7. */
 	for (int i = 0; i < 90; i++)
 		for (int j = 0; j < 4; j++)
 			for (int k = 0; k < 180; k++)
 				for (int c = 0; c < 3 && !(i == 5 && k == 7); c++)
-					samples.value[c][samples_at(180, i, j, k)] = (float)(1 + j + 10 * i);
-	assert_int_equal(measured_init(&measured, &samples, BINS_NODE), STATUS_OK);
-	assert_true(measured.value[3 * samples_at(180, 20, 40, 100)] == 204.0F);
-	assert_true(measured.value[3 * samples_at(180, 5, 2, 7) + 1] == 41.0F);
+					measurement.value[c][measurement_at(180, i, j, k)] = (float)(1 + j + 10 * i);
+	assert_int_equal(measured_init(&measured, &measurement, BINS_NODE), STATUS_OK);
+	assert_true(measured.value[3 * measurement_at(180, 20, 40, 100)] == 204.0F);
+	assert_true(measured.value[3 * measurement_at(180, 5, 2, 7) + 1] == 41.0F);
 	measured_free(&measured);
-	samples_free(&samples);
+	measurement_free(&measurement);
 	/* Below the horizon there is nothing. */
-	assert_int_equal(samples_alloc(&samples, 180), STATUS_OK);
-	assert_int_equal(measured_init(&measured, &samples, BINS_NODE), STATUS_OK);
+	assert_int_equal(measurement_alloc(&measurement, 180), STATUS_OK);
+	assert_int_equal(measured_init(&measured, &measurement, BINS_NODE), STATUS_OK);
 	double f[3] = {1, 1, 1};
 	measured_f(&measured, (struct vec3){0, 0, 1}, (struct vec3){1, 0, -1e-9}, f);
 	assert_true(f[0] == 0 && f[1] == 0 && f[2] == 0);
 	measured_free(&measured);
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 /* The same model from its formula and from its table: the picture is the same to the table's resolution. */
@@ -544,16 +545,17 @@ static void formula_and_table_make_one_picture(void **state)
 	for (size_t i = 0; i < sizeof kind / sizeof *kind; i++)
 		for (int b = 0; b < (i ? 1 : BINS_COUNT); b++) {
 			const struct cook_torrance model = make_model(kind[i].ndf, kind[i].sigma, kind[i].gamma, 1.6);
-			struct samples samples = make_table(&model, 180, (enum bins)b, 0);
+			struct measurement measurement = make_table(&model, 180, (enum bins)b, 0);
 			struct pictures pictures;
 			const struct sphere_options options = {.size = 48, .samples = 32, .threads = 2};
-			assert_int_equal(pictures_render(&samples, (enum bins)b, &(struct pictures_model){&model, NAN},
-							 1, SAMPLING_VISIBLE, &light, &options, &pictures),
+			assert_int_equal(pictures_render(&measurement, (enum bins)b,
+							 &(struct pictures_model){&model, NAN}, 1, SAMPLING_VISIBLE,
+							 &light, &options, &pictures),
 					 STATUS_OK);
 			check_between(pictures.error[0].delta_e, 0, kind[i].delta_e, "delta E");
 			check_between(pictures.error[0].ssim, kind[i].ssim, 1, "SSIM");
 			pictures_free(&pictures);
-			samples_free(&samples);
+			measurement_free(&measurement);
 		}
 	environment_free(&light);
 }

@@ -208,18 +208,18 @@ static void float_range(void **state)
 	static const float scale[] = {1e-45f, 1e-41f, 1e25f, 1e38f, FLT_MAX};
 	struct fit_options options = fit_options_default();
 	struct geometry geometry;
-	struct samples samples;
+	struct measurement measurement;
 	options.threads = 1;
-	assert_int_equal(samples_alloc(&samples, 180), STATUS_OK);
+	assert_int_equal(measurement_alloc(&measurement, 180), STATUS_OK);
 	assert_int_equal(geometry_init(&geometry, 180, &options), STATUS_OK);
 	for (int i = 0; i < COUNT(scale); i++) {
-		struct table table;
+		struct sample_set table;
 		struct objective o;
 		struct linear linear;
-		for (size_t e = 0; e < samples_count(&samples); e++)
-			for (int c = 0; c < SAMPLES_CHANNELS; c++)
-				samples.value[c][e] = scale[i];
-		assert_int_equal(table_init(&table, &geometry, &samples, 1), STATUS_OK);
+		for (size_t e = 0; e < measurement_count(&measurement); e++)
+			for (int c = 0; c < MERL_CHANNELS; c++)
+				measurement.value[c][e] = scale[i];
+		assert_int_equal(sample_set_init(&table, &geometry, &measurement, 1), STATUS_OK);
 		assert_int_equal(objective_init(&o, &table, &options, ndf_find("std"), 1, MASKING_COARSE), STATUS_OK);
 		const double E = objective_eval(&o, &(struct shape){0.1, 3.0, 1.5, 0.0}, 1e-6, true, &linear);
 		check_between(E, scale[i] > 1.0f ? 1.0 - 1e-5 : 0.0, 1.0 + 1e-6, "E");
@@ -229,10 +229,10 @@ static void float_range(void **state)
 			if (!(o.s[n] >= 0.0f && o.s[n] <= FLT_MAX))
 				fail_msg("lobe of slot %d is %g", n, (double)o.s[n]);
 		objective_free(&o);
-		table_free(&table);
+		sample_set_free(&table);
 	}
 	geometry_free(&geometry);
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 int main(void)

@@ -14,7 +14,7 @@ static bool thorough(void)
 	return set && *set == '1';
 }
 
-static struct samples table_of(const struct cook_torrance *model)
+static struct measurement table_of(const struct cook_torrance *model)
 {
 	return make_sparse_table(model, 180, BINS_NODE, 0, 12);
 }
@@ -23,7 +23,7 @@ static struct cook_torrance model_of(const char *ndf, double sigma, double gamma
 {
 	struct cook_torrance model = make_model(ndf, sigma, gamma, n);
 
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+	for (int c = 0; c < MERL_CHANNELS; c++) {
 		model.kd[c] = kd * (1 - 0.2 * c);
 		model.ks[c] = ks * (1 - 0.1 * c);
 	}
@@ -31,13 +31,14 @@ static struct cook_torrance model_of(const char *ndf, double sigma, double gamma
 }
 
 /* Changes every valid entry to what `change` makes of it. */
-static void change_all(struct samples *samples, double (*change)(double value, double random))
+static void change_all(struct measurement *measurement, double (*change)(double value, double random))
 {
 	unsigned seed = 7;
 
-	for (size_t at = 0; at < samples_count(samples); at++)
-		for (int c = 0; c < SAMPLES_CHANNELS; c++)
-			samples->value[c][at] = (float)change((double)samples->value[c][at], random_unit(&seed));
+	for (size_t at = 0; at < measurement_count(measurement); at++)
+		for (int c = 0; c < MERL_CHANNELS; c++)
+			measurement->value[c][at] =
+				(float)change((double)measurement->value[c][at], random_unit(&seed));
 }
 
 static double noisy(double value, double random)
@@ -67,48 +68,48 @@ static double next_float(double value, double random)
 	return (double)(random < 0.5 ? nextafterf((float)value, INFINITY) : (float)value);
 }
 
-static void drop(struct samples *samples, size_t at)
+static void drop(struct measurement *measurement, size_t at)
 {
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		samples->value[c][at] = NAN;
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		measurement->value[c][at] = NAN;
 }
 
-static struct samples mirror(void)
+static struct measurement mirror(void)
 {
 	const struct cook_torrance m = model_of("std", 1e-4, 2.2, 1.5, 0.2, 0.8);
 
 	return table_of(&m);
 }
 
-static struct samples gaussian_mirror(void)
+static struct measurement gaussian_mirror(void)
 {
 	const struct cook_torrance m = model_of("beckmann", 1e-4, INFINITY, 20, 0, 0.8);
 
 	return table_of(&m);
 }
 
-static struct samples long_tail(void)
+static struct measurement long_tail(void)
 {
 	const struct cook_torrance m = model_of("std", 0.03, 1.51, 1.5, 0.2, 0.8);
 
 	return table_of(&m);
 }
 
-static struct samples faint_index(void)
+static struct measurement faint_index(void)
 {
 	const struct cook_torrance m = model_of("ggx", 0.1, 2, 1.01, 0.05, 0.9);
 
 	return table_of(&m);
 }
 
-static struct samples high_index(void)
+static struct measurement high_index(void)
 {
 	const struct cook_torrance m = model_of("ggx", 0.2, 2, 70, 0, 0.7);
 
 	return table_of(&m);
 }
 
-static struct samples rough(void)
+static struct measurement rough(void)
 {
 	const struct cook_torrance m = model_of("std", 3.5, 12, 2, 0.1, 1);
 
@@ -116,62 +117,62 @@ static struct samples rough(void)
 }
 
 /* E falls along a narrow, curved way in sigma, gamma and n. */
-static struct samples curved_valley(void)
+static struct measurement curved_valley(void)
 {
 	const struct cook_torrance m = model_of("std", 0.19, 2.2, 1.006, 0.25, 0.25);
 
 	return table_of(&m);
 }
 
-static struct samples curved_valley_of_gamma(void)
+static struct measurement curved_valley_of_gamma(void)
 {
 	const struct cook_torrance m = model_of("std", 0.63, 10, 1.09, 0.05, 0.1);
 
 	return table_of(&m);
 }
 
-static struct samples almost_lambertian(void)
+static struct measurement almost_lambertian(void)
 {
 	const struct cook_torrance m = model_of("ggx", 0.3, 2, 1.5, 0.6, 1e-3);
 
 	return table_of(&m);
 }
 
-static struct samples faint_lobe(void)
+static struct measurement faint_lobe(void)
 {
 	const struct cook_torrance m = model_of("ggx", 0.3, 2, 1.5, 0.6, 1e-6);
 
 	return table_of(&m);
 }
 
-static struct samples wide_range(void)
+static struct measurement wide_range(void)
 {
 	const struct cook_torrance m = model_of("beckmann", 1e-3, INFINITY, 1.5, 1e-5, 1);
 
 	return table_of(&m);
 }
 
-static struct samples one_entry(void)
+static struct measurement one_entry(void)
 {
 	const struct cook_torrance m = model_of("ggx", 0.3, 2, 1.5, 0.5, 0.5);
-	struct samples s = table_of(&m);
+	struct measurement s = table_of(&m);
 
 	change_all(&s, nothing);
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		s.value[c][samples_at(180, 30, 20, 12)] = 5;
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		s.value[c][measurement_at(180, 30, 20, 12)] = 5;
 	return s;
 }
 
-static struct samples constant(void)
+static struct measurement constant(void)
 {
 	const struct cook_torrance m = model_of("ggx", 0.3, 2, 1.5, 0.5, 0.5);
-	struct samples s = table_of(&m);
+	struct measurement s = table_of(&m);
 
 	change_all(&s, one);
 	return s;
 }
 
-static struct samples black_channel(void)
+static struct measurement black_channel(void)
 {
 	struct cook_torrance m = model_of("ggx", 0.2, 2, 1.5, 0.4, 0.7);
 
@@ -179,68 +180,68 @@ static struct samples black_channel(void)
 	return table_of(&m);
 }
 
-static struct samples two_lobes(void)
+static struct measurement two_lobes(void)
 {
 	const struct cook_torrance wide = model_of("beckmann", 0.7, INFINITY, 1.5, 0.1, 0.8),
 				   narrow = model_of("ggx", 3e-3, 2, 1.5, 0, 0.3);
-	struct samples a = table_of(&wide), b = table_of(&narrow);
+	struct measurement a = table_of(&wide), b = table_of(&narrow);
 
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		for (size_t at = 0; at < samples_count(&a); at++)
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		for (size_t at = 0; at < measurement_count(&a); at++)
 			a.value[c][at] += b.value[c][at];
-	samples_free(&b);
+	measurement_free(&b);
 	return a;
 }
 
-static struct samples plain(void)
+static struct measurement plain(void)
 {
 	const struct cook_torrance m = model_of("std", 0.15, 1.9, 1.6, 0.2, 0.6);
 
 	return table_of(&m);
 }
 
-static struct samples noise(void)
+static struct measurement noise(void)
 {
-	struct samples s = plain();
+	struct measurement s = plain();
 
 	change_all(&s, noisy);
 	return s;
 }
 
-static struct samples spikes(void)
+static struct measurement spikes(void)
 {
-	struct samples s = plain();
+	struct measurement s = plain();
 
 	change_all(&s, spiky);
 	return s;
 }
 
-static struct samples holes(void)
+static struct measurement holes(void)
 {
-	struct samples s = plain();
+	struct measurement s = plain();
 	unsigned seed = 3;
 
-	for (size_t at = 0; at < samples_count(&s); at++)
+	for (size_t at = 0; at < measurement_count(&s); at++)
 		if (random_unit(&seed) < 0.2)
 			drop(&s, at);
 	return s;
 }
 
-static struct samples blocks_missing(void)
+static struct measurement blocks_missing(void)
 {
-	struct samples s = plain();
+	struct measurement s = plain();
 
-	for (size_t at = 0; at < samples_count(&s); at++)
+	for (size_t at = 0; at < measurement_count(&s); at++)
 		if (at / 180 % 90 / 10 % 3 == 1 && at / 180 / 90 / 10 % 2 == 1)
 			drop(&s, at);
 	return s;
 }
 
 /* All but Lambertian, under noise that is larger than its lobe. */
-static struct samples noisy_lambertian(void)
+static struct measurement noisy_lambertian(void)
 {
 	const struct cook_torrance m = model_of("ggx", 0.3, 2, 1.5, 0.6, 1e-5);
-	struct samples s = table_of(&m);
+	struct measurement s = table_of(&m);
 
 	change_all(&s, noisy);
 	return s;
@@ -254,7 +255,7 @@ enum {
 
 static const struct stiff {
 	const char *what;
-	struct samples (*make)(void);
+	struct measurement (*make)(void);
 	double most; /* E of STD at most; where the table is STD's own, what rounding and the search's end leave */
 	unsigned open, may_be_open; /* what has to be, and what may be, undetermined */
 	bool only_thorough;
@@ -291,31 +292,31 @@ static double search_end(double error)
 	return 1e-4 * error + 2e-6;
 }
 
-static double error_with(const struct samples *samples, const struct fit_options *options)
+static double error_with(const struct measurement *measurement, const struct fit_options *options)
 {
 	struct fit_result r;
 
-	run_fit(samples, options, &r);
+	run_fit(measurement, options, &r);
 	return r.error;
 }
 
-static void check_simpler(const struct stiff *stiff, const struct samples *samples, double error)
+static void check_simpler(const struct stiff *stiff, const struct measurement *measurement, double error)
 {
 	struct fit_options simpler = options_for("std"), other = simpler;
 	char label[96];
 
 	simpler.specular = false;
 	snprintf(label, sizeof label, "%s: Lambert alone", stiff->what);
-	check_between(error - error_with(samples, &simpler), -INFINITY, rounding, label);
+	check_between(error - error_with(measurement, &simpler), -INFINITY, rounding, label);
 	if (!thorough())
 		return;
 	simpler.specular = true;
 	simpler.diffuse = false;
 	snprintf(label, sizeof label, "%s: no diffuse term", stiff->what);
-	check_between(error - error_with(samples, &simpler), -INFINITY, search_end(error), label);
+	check_between(error - error_with(measurement, &simpler), -INFINITY, search_end(error), label);
 	other.starts = 50;
 	snprintf(label, sizeof label, "%s: 50 random starts", stiff->what);
-	check_between(error - error_with(samples, &other), -INFINITY, search_end(error), label);
+	check_between(error - error_with(measurement, &other), -INFINITY, search_end(error), label);
 }
 
 static void stiff_tables(void **state)
@@ -329,9 +330,9 @@ static void stiff_tables(void **state)
 
 		if (stiff->only_thorough && !thorough())
 			continue;
-		struct samples samples = stiff->make();
+		struct measurement measurement = stiff->make();
 
-		run_fit(&samples, &options, &r);
+		run_fit(&measurement, &options, &r);
 		check_between(r.error, 0, stiff->most, stiff->what);
 		check_between(r.lower_bound, 0, r.error + rounding, stiff->what);
 		snprintf(label, sizeof label, "%s: shapes evaluated", stiff->what);
@@ -339,10 +340,10 @@ static void stiff_tables(void **state)
 		if ((r.undetermined & stiff->open) != stiff->open ||
 		    r.undetermined & ~(stiff->open | stiff->may_be_open))
 			fail_msg("%s: undetermined 0x%x, expected 0x%x", stiff->what, r.undetermined, stiff->open);
-		check_simpler(stiff, &samples, r.error);
+		check_simpler(stiff, &measurement, r.error);
 		if (thorough()) {
 			struct fit_result all[3];
-			run_fit(&samples, &three, all);
+			run_fit(&measurement, &three, all);
 			assert_true(all[0].error == r.error);
 			assert_true(r.error <= all[1].error && r.error <= all[2].error);
 			printf("%-22s E %-10.4g of GGX %-10.4g of Beckmann %-10.4g sigma %-9.5g gamma %-8.5g n %-8.5g "
@@ -351,7 +352,7 @@ static void stiff_tables(void **state)
 			       r.model.n, r.evaluations, r.seconds);
 			fflush(stdout);
 		}
-		samples_free(&samples);
+		measurement_free(&measurement);
 	}
 }
 
@@ -360,23 +361,23 @@ static void the_largest_value(void **state)
 {
 	const struct fit_options options = fit_options_default();
 	const struct cook_torrance model = model_of("ggx", 0.3, 2, 1.5, 0, 0);
-	struct samples samples = one_entry();
+	struct measurement measurement = one_entry();
 	struct fit_metrics metrics;
 	struct error error = {""};
 	struct vec3 wi, wo;
 
 	(void)state;
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		samples.value[c][samples_at(180, 30, 20, 12)] = 3e38F;
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		measurement.value[c][measurement_at(180, 30, 20, 12)] = 3e38F;
 	halfdiff_trig_dirs(bins_trig(BINS_NODE, 30, 20, 12), &wi, &wo);
-	assert_int_equal(fit_eval(&samples, &model, &options, &metrics, &error), STATUS_OK);
-	const double share = SAMPLES_CHANNELS / (double)metrics.samples, value = wi.z * wo.z * 3e38;
+	assert_int_equal(fit_eval(&measurement, &model, &options, &metrics, &error), STATUS_OK);
+	const double share = MERL_CHANNELS / (double)metrics.samples, value = wi.z * wo.z * 3e38;
 
 	check_rel(metrics.error[WEIGHT_COSINE], 1, 1e-12, "E of a black model");
 	check_rel(metrics.rms_cosine, value * sqrt(share), 1e-6, "rms_cosine");
 	check_rel(metrics.rms_cube_root, cbrt(value) * sqrt(share), 1e-6, "rms_cube_root");
 	check_rel(metrics.log_error, log(value / 1e-3) * share, 1e-6, "log_error");
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 static double faint(double value, double random)
@@ -389,60 +390,60 @@ static double faint(double value, double random)
 static void any_unit_of_the_data(void **state)
 {
 	struct fit_options options = options_for("ggx");
-	struct samples samples = noise();
+	struct measurement measurement = noise();
 	struct fit_result r, same;
 
 	(void)state;
-	run_fit(&samples, &options, &r);
-	change_all(&samples, faint);
-	run_fit(&samples, &options, &same);
+	run_fit(&measurement, &options, &r);
+	change_all(&measurement, faint);
+	run_fit(&measurement, &options, &same);
 	check_rel(same.error, r.error, 1e-6, "E of a faint table");
 	check_rel(same.model.kd[0] * 0x1p70, r.model.kd[0], 1e-3, "its kd");
 	check_rel(same.model.ks[0] * 0x1p70, r.model.ks[0], 1e-3, "its ks");
 	options.specular = false;
-	run_fit(&samples, &options, &same);
+	run_fit(&measurement, &options, &same);
 	check_between(same.lower_bound, 0, same.error + rounding, "Lambert alone, certified");
 	check_between(same.error, r.error, 0.999, "Lambert alone");
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 /* Half of the values move to the next float. */
 static void a_rounding_of_the_data(void **state)
 {
 	const struct fit_options options = options_for("ggx");
-	struct samples samples = noise();
+	struct measurement measurement = noise();
 
 	(void)state;
-	const double before = error_with(&samples, &options);
+	const double before = error_with(&measurement, &options);
 
-	change_all(&samples, next_float);
-	check_rel(error_with(&samples, &options), before, 1e-6, "E after a rounding");
-	samples_free(&samples);
+	change_all(&measurement, next_float);
+	check_rel(error_with(&measurement, &options), before, 1e-6, "E after a rounding");
+	measurement_free(&measurement);
 }
 
 static void only_what_is_free_is_named(void **state)
 {
 	struct fit_options options = options_for("ggx");
-	struct samples samples = noisy_lambertian();
+	struct measurement measurement = noisy_lambertian();
 	struct fit_result r;
 
 	(void)state;
 	options.ior = 1.5;
-	run_fit(&samples, &options, &r);
+	run_fit(&measurement, &options, &r);
 	assert_int_equal(r.undetermined & SHAPE, BOUND_SIGMA);
 	options.gray = true;
 	options.sigma = 0.3;
-	run_fit(&samples, &options, &r);
+	run_fit(&measurement, &options, &r);
 	assert_int_equal(r.undetermined & (SHAPE | KD), 0);
 	/* One ks, three names; where F is what it is, ks = 1 is a lobe that the data do not have. */
 	assert_int_equal(r.undetermined & KS, 0);
 	options.sigma = options.ior = NAN;
-	run_fit(&samples, &options, &r);
+	run_fit(&measurement, &options, &r);
 	assert_int_equal(r.undetermined, BOUND_SIGMA | BOUND_IOR | KS);
 	options.specular = false;
-	run_fit(&samples, &options, &r);
+	run_fit(&measurement, &options, &r);
 	assert_int_equal(r.undetermined, 0);
-	samples_free(&samples);
+	measurement_free(&measurement);
 }
 
 int main(void)

@@ -8,7 +8,7 @@
 enum { JOBS = 2, NDFS = 3 };
 
 struct job {
-	struct samples table;
+	struct measurement table;
 	struct fit_options options;
 	struct fit_result result[NDFS];
 	struct fit_context *context; /* shared by the jobs */
@@ -69,7 +69,7 @@ static void two_at_once(void **state)
 			check_same(&job[j].result[n], &alone[j][n]);
 	}
 	for (int j = 0; j < JOBS; j++)
-		samples_free(&job[j].table);
+		measurement_free(&job[j].table);
 	fit_context_free(context);
 }
 

@@ -6,7 +6,7 @@
 #include "fit/cli/options.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
-#include "fit/error/table.h"
+#include "fit/error/sample_set.h"
 #include "fit/results/result.h"
 #include "fit/results/trace.h"
 #include "fit/search/search.h"
@@ -85,11 +85,11 @@ struct bench {
 	const struct algorithm *algorithm[ALGORITHM_COUNT];
 	int n_algorithms;
 	char *material;
-	struct samples samples;
+	struct measurement measurement;
 	struct fit_context *context;
 	/* The full table, to judge the shapes of thinned ones by. */
 	struct geometry geometry;
-	struct table full;
+	struct sample_set full;
 	struct csv_table output;
 	bool incomplete;          /* some form of Lambda could not be fitted */
 	struct atomic_file trace; /* if the options want one */
@@ -128,7 +128,7 @@ static enum status run_one(struct bench *b, const struct algorithm *algorithm, s
 	fit.trace = curve_note;
 	fit.trace_data = curve;
 	curve->begin_s = search_clock();
-	const enum status status = fit_run(b->context, &b->samples, &fit, &result, &b->error);
+	const enum status status = fit_run(b->context, &b->measurement, &fit, &result, &b->error);
 	if (status)
 		return status;
 	const struct cook_torrance *m = &result.model;
@@ -254,11 +254,11 @@ static enum status run_algorithm(struct bench *b, const struct algorithm *algori
 static enum status read_file(struct bench *b)
 {
 	const struct options *options = b->options;
-	enum status status = merl_read(options->path[0], options->fit.threads, &b->samples, &b->error);
+	enum status status = merl_read(options->path[0], options->fit.threads, &b->measurement, &b->error);
 	if (status)
 		return status;
 	b->material = result_material(options->path[0]);
-	status = b->material ? fit_context_new(&b->context, b->samples.n_phi_d, &options->fit) : STATUS_NO_MEMORY;
+	status = b->material ? fit_context_new(&b->context, b->measurement.n_phi_d, &options->fit) : STATUS_NO_MEMORY;
 	return status ? error_set(&b->error, status, "%s", status_str(status)) : STATUS_OK;
 }
 
@@ -274,9 +274,9 @@ static enum status prepare(struct bench *b)
 	enum status status = read_file(b);
 	if (status)
 		return status;
-	status = geometry_init(&b->geometry, b->samples.n_phi_d, fit);
+	status = geometry_init(&b->geometry, b->measurement.n_phi_d, fit);
 	if (!status)
-		status = table_init(&b->full, &b->geometry, &b->samples, fit->threads);
+		status = sample_set_init(&b->full, &b->geometry, &b->measurement, fit->threads);
 	if (status == STATUS_NO_DATA)
 		return error_set(&b->error, status, "no entry to fit: expected some valid ones that are not all zero");
 	return status ? error_set(&b->error, status, "%s", status_str(status)) : STATUS_OK;
@@ -311,7 +311,7 @@ static enum status eval_exact(struct bench *b, const struct fit_result *result, 
 	enum status status = ndf_set_lambda_form(&model.ndf, LAMBDA_EXACT);
 	if (status)
 		return error_set(&b->error, status, "%s", status_str(status));
-	status = fit_eval(&b->samples, &model, fit, &metrics, &b->error);
+	status = fit_eval(&b->measurement, &model, fit, &metrics, &b->error);
 	if (!status)
 		*error = metrics.error[fit->weight];
 	return status;
@@ -354,7 +354,7 @@ static enum status run_form(struct bench *b, enum lambda_form form)
 	fit.lambda = form;
 	if (!isnan(fit.gamma) && !lambda_form_takes(form, fit.gamma))
 		return add_form(b, form, NULL);
-	enum status status = fit_run(b->context, &b->samples, &fit, &result, &b->error);
+	enum status status = fit_run(b->context, &b->measurement, &fit, &result, &b->error);
 	if (status == STATUS_DOMAIN) {
 		tell_no_more(b);
 		report_error("cannot fit %s with Lambda %s: %s", ndf_name(fit.ndf[0]), lambda_form_name(form),
@@ -384,10 +384,10 @@ static void release(struct bench *b)
 {
 	atomic_file_abort(&b->trace);
 	csv_table_free(&b->output);
-	table_free(&b->full);
+	sample_set_free(&b->full);
 	geometry_free(&b->geometry);
 	fit_context_free(b->context);
-	samples_free(&b->samples);
+	measurement_free(&b->measurement);
 	free(b->material);
 }
 

@@ -44,7 +44,7 @@ static const struct csv_column columns[EVAL_COLUMNS] = {
 
 struct evaluation {
 	const char *path;
-	struct samples samples;
+	struct measurement measurement;
 	struct csv_table output;
 };
 
@@ -52,7 +52,7 @@ static enum status evaluate(struct evaluation *e, const struct source_model *sou
 {
 	struct fit_metrics m;
 	struct error why;
-	const enum status status = fit_eval(&e->samples, &source->model, &source->fit, &m, &why);
+	const enum status status = fit_eval(&e->measurement, &source->model, &source->fit, &m, &why);
 	if (status) {
 		char name[TEXT_QUOTE_SIZE];
 		text_quote(e->path, name, sizeof name);
@@ -85,7 +85,7 @@ static enum status evaluate(struct evaluation *e, const struct source_model *sou
 static enum status evaluate_all(struct evaluation *e, const struct options *options, struct error *error)
 {
 	struct model_source source;
-	enum status status = merl_read(e->path, options->fit.threads, &e->samples, error);
+	enum status status = merl_read(e->path, options->fit.threads, &e->measurement, error);
 	if (!status)
 		status = model_source_read(options, e->path, &source, error);
 	if (status)
@@ -111,6 +111,6 @@ int cmd_eval(int argc, char **argv, atomic_bool *cancel)
 		return code;
 	struct evaluation e = {.path = options.path[0], .output = csv_table_make(columns, EVAL_COLUMNS)};
 	const enum status status = evaluate_all(&e, &options, &error);
-	samples_free(&e.samples);
+	measurement_free(&e.measurement);
 	return options_end(&options, status, &error, &e.output, report_records);
 }

@@ -32,30 +32,30 @@ static int check(const struct options *options)
  * and still the same. Else it does without; the export tells what its errors are against. *found is its path, or NULL.
  * Fails only when out of memory: that says nothing about the file. */
 static enum status find_samples(const struct options *options, const struct source_model *model,
-				struct samples *samples, const char **found, struct error *error)
+				struct measurement *measurement, const char **found, struct error *error)
 {
 	const char *path = options->n_paths ? options->path[0] : model->path;
-	*found = samples->value[0] ? path : NULL;
+	*found = measurement->value[0] ? path : NULL;
 	if (*found || !path || !export_wants_samples(options->format, &model->model))
 		return STATUS_OK;
-	const enum status status = merl_read(path, options->fit.threads, samples, error);
+	const enum status status = merl_read(path, options->fit.threads, measurement, error);
 	if (status)
 		return status == STATUS_NO_MEMORY ? status : STATUS_OK;
-	if (options->n_paths || result_is_input(model->input, samples))
+	if (options->n_paths || result_is_input(model->input, measurement))
 		*found = path;
 	else
-		samples_free(samples);
+		measurement_free(measurement);
 	return STATUS_OK;
 }
 
 static enum status write_merl(const struct export *export, const char *path, struct error *error)
 {
-	struct samples samples;
-	enum status status = export_table(export, &samples);
+	struct measurement measurement;
+	enum status status = export_table(export, &measurement);
 	if (status)
 		return error_set(error, status, "%s", status_str(status));
-	status = merl_write(path, &samples, error);
-	samples_free(&samples);
+	status = merl_write(path, &measurement, error);
+	measurement_free(&measurement);
 	return status;
 }
 
@@ -97,11 +97,11 @@ static enum status write_text(const struct export *export, const char *path, str
 }
 
 /* Writes the one model; tells on standard error what a binary file has no room for. */
-static enum status write_model(const struct options *options, const struct source_model *model, struct samples *samples,
-			       struct error *error)
+static enum status write_model(const struct options *options, const struct source_model *model,
+			       struct measurement *measurement, struct error *error)
 {
 	const char *measured;
-	enum status status = find_samples(options, model, samples, &measured, error);
+	enum status status = find_samples(options, model, measurement, &measured, error);
 	if (status)
 		return status;
 	const struct export_source source = {.model = &model->model,
@@ -109,7 +109,7 @@ static enum status write_model(const struct options *options, const struct sourc
 					     .error = model->error,
 					     .material = model->material,
 					     .path = measured ? measured : model->path,
-					     .samples = measured ? samples : NULL};
+					     .measurement = measured ? measurement : NULL};
 	struct export export;
 	struct error why;
 	status = export_prepare(&export, options->format, &source, &why);
@@ -136,7 +136,7 @@ static enum status run(const struct options *options, struct error *error)
 		status =
 			error_set(error, STATUS_FORMAT, "%zu rows are meant: choose one with --ndf or --row", source.n);
 	else
-		status = write_model(options, &source.model[0], &source.samples, error);
+		status = write_model(options, &source.model[0], &source.measurement, error);
 	model_source_free(&source);
 	return status;
 }

@@ -5,7 +5,7 @@
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
 #include "fit/error/entries.h"
-#include "fit/error/table.h"
+#include "fit/error/sample_set.h"
 
 #include <gsl/gsl_statistics_float.h>
 #include <inttypes.h>
@@ -63,27 +63,28 @@ struct range {
 /* What is counted over the entries. Ranges are of valid entries above the horizon; NaN when there is none. */
 struct census {
 	size_t valid, above, valid_above, valid_below;
-	struct range range[SAMPLES_CHANNELS];
+	struct range range[MERL_CHANNELS];
 };
 
 /* Counts, and picks out the valid entries above the horizon into value[channel]. */
-static void count_entries(const struct samples *samples, enum bins bins, float *const value[], struct census *census)
+static void count_entries(const struct measurement *measurement, enum bins bins, float *const value[],
+			  struct census *census)
 {
-	const struct entries entries = entries_make(bins, samples->n_phi_d);
+	const struct entries entries = entries_make(bins, measurement->n_phi_d);
 	size_t at = 0;
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		for (int j = 0; j < SAMPLES_THETA_D; j++)
-			for (int k = 0; k < samples->n_phi_d; k++, at++) {
+	for (int i = 0; i < MERL_THETA_H; i++)
+		for (int j = 0; j < MERL_THETA_D; j++)
+			for (int k = 0; k < measurement->n_phi_d; k++, at++) {
 				struct vec3 wi, wo;
 				entries_dirs(&entries, i, j, k, &wi, &wo);
-				const bool above = entry_in_range(wi, wo, 0), valid = !isnan(samples->value[0][at]);
+				const bool above = entry_in_range(wi, wo, 0), valid = !isnan(measurement->value[0][at]);
 				census->above += above;
 				census->valid += valid;
 				census->valid_below += valid && fmin(wi.z, wo.z) < -HORIZON;
 				if (!above || !valid)
 					continue;
-				for (int c = 0; c < SAMPLES_CHANNELS; c++)
-					value[c][census->valid_above] = samples->value[c][at];
+				for (int c = 0; c < MERL_CHANNELS; c++)
+					value[c][census->valid_above] = measurement->value[c][at];
 				census->valid_above++;
 			}
 }
@@ -96,16 +97,16 @@ static double median(float *value, size_t n)
 	return below / 2 + (double)gsl_stats_float_select(value, 1, n, n / 2) / 2;
 }
 
-static enum status take_census(const struct samples *samples, enum bins bins, struct census *census)
+static enum status take_census(const struct measurement *measurement, enum bins bins, struct census *census)
 {
-	const size_t n = samples_count(samples);
-	float *values = malloc(SAMPLES_CHANNELS * n * sizeof(*values));
+	const size_t n = measurement_count(measurement);
+	float *values = malloc(MERL_CHANNELS * n * sizeof(*values));
 	if (!values)
 		return STATUS_NO_MEMORY;
-	float *const value[SAMPLES_CHANNELS] = {values, values + n, values + 2 * n};
+	float *const value[MERL_CHANNELS] = {values, values + n, values + 2 * n};
 	*census = (struct census){0};
-	count_entries(samples, bins, value, census);
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+	count_entries(measurement, bins, value, census);
+	for (int c = 0; c < MERL_CHANNELS; c++) {
 		struct range *range = &census->range[c];
 		*range = (struct range){NAN, NAN, NAN};
 		if (!census->valid_above)
@@ -128,7 +129,7 @@ static void add_count(char *text, const char *what, size_t n)
 }
 
 /* What a sound measurement does not have. */
-static void write_suspects(char text[SUSPECTS_SIZE], const struct samples *samples, const struct census *census)
+static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *measurement, const struct census *census)
 {
 	const bool zero = census->range[0].max <= 0 && census->range[1].max <= 0 && census->range[2].max <= 0;
 	snprintf(text, SUSPECTS_SIZE, "%s",
@@ -137,24 +138,24 @@ static void write_suspects(char text[SUSPECTS_SIZE], const struct samples *sampl
 				      : "");
 	add_count(text, "masked above the horizon", census->above - census->valid_above);
 	add_count(text, "valid below the horizon", census->valid_below);
-	add_count(text, "non-finite", samples->n_nonfinite);
+	add_count(text, "non-finite", measurement->n_nonfinite);
 }
 
-static enum status add_file(struct csv_table *table, const char *path, const struct samples *samples,
+static enum status add_file(struct csv_table *table, const char *path, const struct measurement *measurement,
 			    const struct census *census)
 {
 	double number[INFO_COLUMNS] = {
-		[INFO_SIZE] = (double)samples->file_size,
-		[INFO_N_THETA_H] = SAMPLES_THETA_H,
-		[INFO_N_THETA_D] = SAMPLES_THETA_D,
-		[INFO_N_PHI_D] = samples->n_phi_d,
+		[INFO_SIZE] = (double)measurement->file_size,
+		[INFO_N_THETA_H] = MERL_THETA_H,
+		[INFO_N_THETA_D] = MERL_THETA_D,
+		[INFO_N_PHI_D] = measurement->n_phi_d,
 		[INFO_VALID] = (double)census->valid,
-		[INFO_NEGATIVE] = (double)samples->n_negative,
-		[INFO_NONFINITE] = (double)samples->n_nonfinite,
+		[INFO_NEGATIVE] = (double)measurement->n_negative,
+		[INFO_NONFINITE] = (double)measurement->n_nonfinite,
 		[INFO_ABOVE] = (double)census->above,
 		[INFO_VALID_ABOVE] = (double)census->valid_above,
 	};
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+	for (int c = 0; c < MERL_CHANNELS; c++) {
 		number[INFO_RANGE + 3 * c] = census->range[c].min;
 		number[INFO_RANGE + 3 * c + 1] = census->range[c].median;
 		number[INFO_RANGE + 3 * c + 2] = census->range[c].max;
@@ -163,8 +164,8 @@ static enum status add_file(struct csv_table *table, const char *path, const str
 	const char *cell[INFO_COLUMNS];
 	for (int c = 0; c < INFO_COLUMNS; c++)
 		cell[c] = csv_number(text[c], number[c]);
-	snprintf(hash, sizeof hash, "%016" PRIx64, samples->file_hash);
-	write_suspects(suspects, samples, census);
+	snprintf(hash, sizeof hash, "%016" PRIx64, measurement->file_hash);
+	write_suspects(suspects, measurement, census);
 	cell[INFO_PATH] = path;
 	cell[INFO_HASH] = hash;
 	cell[INFO_SUSPECTS] = suspects;
@@ -174,17 +175,17 @@ static enum status add_file(struct csv_table *table, const char *path, const str
 static enum status inspect(struct csv_table *table, const struct options *options, const char *path,
 			   struct error *error)
 {
-	struct samples samples;
+	struct measurement measurement;
 	struct census census;
-	enum status status = merl_read(path, options->fit.threads, &samples, error);
+	enum status status = merl_read(path, options->fit.threads, &measurement, error);
 	if (status)
 		return status;
-	status = take_census(&samples, options->fit.bins, &census);
+	status = take_census(&measurement, options->fit.bins, &census);
 	if (!status)
-		status = add_file(table, path, &samples, &census);
+		status = add_file(table, path, &measurement, &census);
 	if (status)
 		error_set(error, status, "out of memory");
-	samples_free(&samples);
+	measurement_free(&measurement);
 	return status;
 }
 

@@ -185,7 +185,7 @@ static void draw(struct render *render, const char *material, const struct chose
 }
 
 /* Renders the models of a table that has been read, draws and reports them. */
-static enum status show_models(struct render *render, const char *path, const struct samples *samples,
+static enum status show_models(struct render *render, const char *path, const struct measurement *measurement,
 			       const struct chosen *chosen)
 {
 	struct pictures pictures;
@@ -194,7 +194,7 @@ static enum status show_models(struct render *render, const char *path, const st
 	for (int i = 0; i < chosen->n; i++)
 		model[i] = (struct pictures_model){&chosen->model[i]->model, chosen->model[i]->error};
 	enum status status =
-		material ? pictures_render(samples, chosen->model[0]->fit.bins, model, chosen->n,
+		material ? pictures_render(measurement, chosen->model[0]->fit.bins, model, chosen->n,
 					   render->options->sampling, &render->environment, &render->sphere, &pictures)
 			 : STATUS_NO_MEMORY;
 	for (int i = 0; i < chosen->n && !status; i++)
@@ -211,13 +211,13 @@ static enum status show_source(struct render *render, const char *path, struct m
 {
 	struct chosen chosen;
 	enum status status = choose(render, source, path, &chosen, error);
-	if (!status && !source->samples.value[0])
-		status = merl_read(path, render->options->fit.threads, &source->samples, error);
+	if (!status && !source->measurement.value[0])
+		status = merl_read(path, render->options->fit.threads, &source->measurement, error);
 	for (int i = 0; i < chosen.n && !status && render->from_table; i++)
-		status = result_check_input(chosen.model[i]->input, &source->samples, path, error);
+		status = result_check_input(chosen.model[i]->input, &source->measurement, path, error);
 	if (status)
 		return status;
-	status = show_models(render, path, &source->samples, &chosen);
+	status = show_models(render, path, &source->measurement, &chosen);
 	if (!status)
 		return STATUS_OK;
 	char name[TEXT_QUOTE_SIZE];

@@ -10,15 +10,15 @@
 #include <gsl/gsl_rng.h>
 
 /* Multiplies each value with 1 + noise g, g normally distributed, in the order of the file; at least 0. */
-static enum status add_noise(struct samples *samples, double noise, uint64_t seed)
+static enum status add_noise(struct measurement *measurement, double noise, uint64_t seed)
 {
 	gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
 	if (!rng)
 		return STATUS_NO_MEMORY;
 	gsl_rng_set(rng, (unsigned long)seed);
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		for (size_t e = 0; e < samples_count(samples); e++) {
-			float *value = &samples->value[c][e];
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		for (size_t e = 0; e < measurement_count(measurement); e++) {
+			float *value = &measurement->value[c][e];
 			if (!isnan(*value))
 				*value *= (float)fmax(0, 1 + gsl_ran_gaussian(rng, noise));
 		}
@@ -28,18 +28,18 @@ static enum status add_noise(struct samples *samples, double noise, uint64_t see
 
 static enum status synthesise(const struct options *options, const struct cook_torrance *model, struct error *error)
 {
-	struct samples samples;
+	struct measurement measurement;
 	enum status status =
-		model_table(model, options->fit.bins, options->n_phi_d, 90, options->fit.threads, &samples);
+		model_table(model, options->fit.bins, options->n_phi_d, 90, options->fit.threads, &measurement);
 	if (status)
 		return error_set(error, status, "%s", status_str(status));
 	if (options->noise > 0)
-		status = add_noise(&samples, options->noise, options->fit.seed);
+		status = add_noise(&measurement, options->noise, options->fit.seed);
 	if (status)
 		error_set(error, status, "%s", status_str(status));
 	else
-		status = *options->cancel ? STATUS_INTERRUPTED : merl_write(options->path[0], &samples, error);
-	samples_free(&samples);
+		status = *options->cancel ? STATUS_INTERRUPTED : merl_write(options->path[0], &measurement, error);
+	measurement_free(&measurement);
 	return status;
 }
 

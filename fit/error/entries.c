@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/error/entries.h"
 
-_Static_assert((int)SAMPLES_THETA_H == (int)SAMPLES_THETA_D, "one array serves both angles");
+_Static_assert((int)MERL_THETA_H == (int)MERL_THETA_D, "one array serves both angles");
 
 struct entries entries_make(enum bins bins, int n_phi_d)
 {
 	struct entries entries = {0};
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
+	for (int i = 0; i < MERL_THETA_H; i++)
 		entries.theta[i] = bins_trig(bins, i, i, 0);
 	for (int k = 0; k < n_phi_d; k++)
 		entries.phi[k] = bins_trig(bins, 0, 0, k);

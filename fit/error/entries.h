@@ -3,12 +3,12 @@
 #ifndef ENTRIES_H
 #define ENTRIES_H
 
-#include "data_readers/samples.h"
+#include "data_readers/measurement.h"
 
 /* struct entries - sines and cosines by index: bins_trig() for each entry anew would cost more than a BRDF does. */
 struct entries {
-	struct halfdiff_trig theta[SAMPLES_THETA_H]; /* theta_h and theta_d */
-	struct halfdiff_trig phi[360];               /* phi_d */
+	struct halfdiff_trig theta[MERL_THETA_H]; /* theta_h and theta_d */
+	struct halfdiff_trig phi[360];            /* phi_d */
 };
 
 struct entries entries_make(enum bins bins, int n_phi_d);

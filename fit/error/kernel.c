@@ -21,24 +21,24 @@ static inline float g1_at(const struct kernel_g1 *g1, const float *restrict valu
 	return value[index] + fraction * (value[index + 1] - value[index]);
 }
 
-static void lobe_separable(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_slots *slots,
+static void lobe_separable(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_samples *slots,
 			   float *restrict s)
 {
 	const struct kernel_g1 table = *g1;
-	const float *restrict value = g1->value, *restrict geo = slots->geo;
+	const float *restrict value = g1->value, *restrict geometric_factor = slots->geometric_factor;
 	const int32_t *restrict q_i = slots->q_i, *restrict q_o = slots->q_o;
 	const uint16_t *restrict at = slots->row;
 
 #pragma omp simd
 	for (int n = 0; n < KERNEL_BLOCK; n++)
-		s[n] = geo[n] * row[at[n]] * g1_at(&table, value, q_i[n]) * g1_at(&table, value, q_o[n]);
+		s[n] = geometric_factor[n] * row[at[n]] * g1_at(&table, value, q_i[n]) * g1_at(&table, value, q_o[n]);
 }
 
-static void lobe_correlated(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_slots *slots,
+static void lobe_correlated(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_samples *slots,
 			    float *restrict s)
 {
 	const struct kernel_g1 table = *g1;
-	const float *restrict value = g1->value, *restrict geo = slots->geo;
+	const float *restrict value = g1->value, *restrict geometric_factor = slots->geometric_factor;
 	const int32_t *restrict q_i = slots->q_i, *restrict q_o = slots->q_o;
 	const uint16_t *restrict at = slots->row;
 
@@ -48,21 +48,21 @@ static void lobe_correlated(const struct kernel_g1 *g1, const float *restrict ro
 		/* 1/(1/i + 1/o - 1), without the division by a G1 that may be 0. */
 		const float below = i + o - i * o;
 
-		s[n] = geo[n] * row[at[n]] * (below > 0 ? i * o / below : 0);
+		s[n] = geometric_factor[n] * row[at[n]] * (below > 0 ? i * o / below : 0);
 	}
 }
 
-static void lobe_static(const float *restrict row, const struct kernel_slots *slots, float *restrict s)
+static void lobe_static(const float *restrict row, const struct kernel_samples *slots, float *restrict s)
 {
-	const float *restrict geo = slots->geo;
+	const float *restrict geometric_factor = slots->geometric_factor;
 	const uint16_t *restrict at = slots->row;
 
 #pragma omp simd
 	for (int n = 0; n < KERNEL_BLOCK; n++)
-		s[n] = geo[n] * row[at[n]];
+		s[n] = geometric_factor[n] * row[at[n]];
 }
 
-static void lobe(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *row, const struct kernel_slots *slots,
+static void lobe(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *row, const struct kernel_samples *slots,
 		 float *s)
 {
 	switch (gaf) {
@@ -180,7 +180,7 @@ __attribute__((always_inline)) static inline void run(int members, bool curved, 
 }
 
 __attribute__((always_inline)) static inline void block(int members, bool curved, const float *m, const float *w,
-							const float *s, const struct kernel_look *look,
+							const float *s, const struct kernel_evaluation *look,
 							struct kernel_sums *sums)
 {
 	const lanes zero = {0};
@@ -202,7 +202,7 @@ __attribute__((always_inline)) static inline void block(int members, bool curved
 }
 
 __attribute__((always_inline)) static inline void either_block(int members, const float *m, const float *w,
-							       const float *s, const struct kernel_look *look,
+							       const float *s, const struct kernel_evaluation *look,
 							       struct kernel_sums *sums)
 {
 	if (look->tau > 0)
@@ -212,7 +212,7 @@ __attribute__((always_inline)) static inline void either_block(int members, cons
 }
 
 /* Each count of members gets a loop of its own. */
-static void pass(int members, const float *m, const float *w, const float *s, const struct kernel_look *look,
+static void pass(int members, const float *m, const float *w, const float *s, const struct kernel_evaluation *look,
 		 struct kernel_sums *sums)
 {
 	switch (members) {

@@ -25,19 +25,19 @@ struct kernel_g1 {
 enum kernel_gaf {
 	KERNEL_SEPARABLE,  /* G1(i) G1(o) */
 	KERNEL_CORRELATED, /* 1 / (1/G1(i) + 1/G1(o) - 1) */
-	KERNEL_STATIC,     /* G depends on the geometry alone and stands in geo already */
+	KERNEL_STATIC,     /* G depends on the geometry alone and stands in geometric_factor already */
 };
 
-/* Geometry of one block of slots; see struct table. */
-struct kernel_slots {
+/* Geometry of one block of slots; see struct sample_set. */
+struct kernel_samples {
 	const int32_t *q_i, *q_o;
-	const float *geo;
+	const float *geometric_factor;
 	const uint16_t *row;
 };
 
 /* Where a pass looks: d = kd/pi and ks. tau: relative width of the window in which the curvature is estimated, 0 for none;
  * floor: added to the model, in units of the weight, where the window's width is concerned. */
-struct kernel_look {
+struct kernel_evaluation {
 	double d, ks, tau, floor;
 };
 
@@ -50,13 +50,13 @@ struct kernel_sums {
 
 struct kernel {
 	const char *name;
-	/* lobe - s = geo row[.] G for one block. */
+	/* lobe - s = geometric_factor row[.] G for one block. */
 	void (*lobe)(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *row,
-		     const struct kernel_slots *slots, float *s);
+		     const struct kernel_samples *slots, float *s);
 	/* pass - sums of one block. Of each slot it takes `members` values, KERNEL_BLOCK apart: 1 of a single and 2 of a
 	 * pair for one channel, 3 or 6 for the three channels under one kd and ks. */
-	void (*pass)(int members, const float *value, const float *w, const float *s, const struct kernel_look *look,
-		     struct kernel_sums *sums);
+	void (*pass)(int members, const float *value, const float *w, const float *s,
+		     const struct kernel_evaluation *look, struct kernel_sums *sums);
 };
 
 extern const struct kernel kernel_plain;

@@ -15,7 +15,7 @@ struct sums {
 enum { ROW_MOST = 4 * 91 };
 struct row {
 	int n;
-	double c[ROW_MOST], lobe[ROW_MOST], m[SAMPLES_CHANNELS][ROW_MOST];
+	double c[ROW_MOST], lobe[ROW_MOST], m[MERL_CHANNELS][ROW_MOST];
 };
 
 /* Cube root to float precision, in a form that vectorises: a first guess from the exponent, two steps of Halley. */
@@ -40,7 +40,7 @@ static void sum_row(const struct row *row, const struct cook_torrance *model, do
 {
 	const double offset = 1e-3; /* of the logarithmic metric */
 
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+	for (int c = 0; c < MERL_CHANNELS; c++) {
 		const double kd = model->kd[c] / M_PI, ks = model->ks[c];
 		const double *m = row->m[c];
 		double d_none = 0, d_cosine = 0, m_none = 0, m_cosine = 0, square = 0, root = 0;
@@ -78,12 +78,12 @@ static void sum_row(const struct row *row, const struct cook_torrance *model, do
 		sums->square += square;
 		sums->cube_root += root;
 	}
-	sums->n += (size_t)row->n * SAMPLES_CHANNELS;
+	sums->n += (size_t)row->n * MERL_CHANNELS;
 }
 
 /* Adds the valid entries of slot n to the row. */
-static void add_entries(struct row *row, const struct geometry *g, const struct samples *samples, int n, double c,
-			double lobe)
+static void add_entries(struct row *row, const struct geometry *g, const struct measurement *measurement, int n,
+			double c, double lobe)
 {
 	int k[4];
 	const int count = geometry_members(g, n, k);
@@ -91,12 +91,12 @@ static void add_entries(struct row *row, const struct geometry *g, const struct 
 	for (int a = 0; a < count; a++) {
 		const size_t at = (size_t)g->row[n] * (size_t)g->n_phi_d + (size_t)k[a];
 
-		if (isnan(samples->value[0][at]))
+		if (isnan(measurement->value[0][at]))
 			continue;
 		row->c[row->n] = c;
 		row->lobe[row->n] = lobe;
-		for (int ch = 0; ch < SAMPLES_CHANNELS; ch++)
-			row->m[ch][row->n] = (double)samples->value[ch][at];
+		for (int ch = 0; ch < MERL_CHANNELS; ch++)
+			row->m[ch][row->n] = (double)measurement->value[ch][at];
 		row->n++;
 	}
 }
@@ -104,12 +104,12 @@ static void add_entries(struct row *row, const struct geometry *g, const struct 
 /* The parts of a model that a table of (theta_h, theta_d, phi_d) asks for again and again. */
 struct parts {
 	struct masking masking;
-	double D[SAMPLES_THETA_H], F[SAMPLES_THETA_D];
+	double D[MERL_THETA_H], F[MERL_THETA_D];
 };
 
 static enum status parts_init(struct parts *parts, const struct geometry *g, const struct cook_torrance *model)
 {
-	for (int i = 0; i < SAMPLES_THETA_H; i++) {
+	for (int i = 0; i < MERL_THETA_H; i++) {
 		parts->D[i] =
 			ndf_D(&model->ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
 		parts->F[i] = fresnel_F(model->fresnel, g->entries.theta[i].cos_d, model->n, model->k);
@@ -123,8 +123,8 @@ static enum status parts_init(struct parts *parts, const struct geometry *g, con
 
 static double cos_product(const struct geometry *g, int n)
 {
-	const struct halfdiff_trig *h = &g->entries.theta[g->row[n] / SAMPLES_THETA_D],
-				   *d = &g->entries.theta[g->row[n] % SAMPLES_THETA_D];
+	const struct halfdiff_trig *h = &g->entries.theta[g->row[n] / MERL_THETA_D],
+				   *d = &g->entries.theta[g->row[n] % MERL_THETA_D];
 	const double a = h->cos_h * d->cos_d, b = h->sin_h * d->sin_d * g->entries.phi[g->k[n]].cos_phi;
 
 	return (a - b) * (a + b);
@@ -133,11 +133,11 @@ static double cos_product(const struct geometry *g, int n)
 /* c: cos_i cos_o of slot n. */
 static double lobe_at(const struct parts *p, const struct geometry *g, int n, double c)
 {
-	const double spread = p->D[g->row[n] / SAMPLES_THETA_D] * p->F[g->row[n] % SAMPLES_THETA_D];
+	const double spread = p->D[g->row[n] / MERL_THETA_D] * p->F[g->row[n] % MERL_THETA_D];
 
-	/* geo and w both carry the weight of the fit; geo alone has the v-groove's G. */
+	/* geometric_factor and w both carry the weight of the fit; geometric_factor alone has the v-groove's G. */
 	if (g->gaf == GAF_V_GROOVE)
-		return spread * (double)g->geo[n] / (double)g->w[n];
+		return spread * (double)g->geometric_factor[n] / (double)g->w[n];
 	const double i = masking_at(&p->masking, g->q_i[n]), o = masking_at(&p->masking, g->q_o[n]);
 
 	if (g->gaf == GAF_UNCORRELATED)
@@ -146,17 +146,18 @@ static double lobe_at(const struct parts *p, const struct geometry *g, int n, do
 }
 
 /* One theta_h, all its rows into sums[0] or each into sums[its theta_d]. */
-static void sum_theta_h(const struct geometry *g, const struct samples *samples, const struct cook_torrance *model,
-			const struct parts *parts, int i, bool by_row, struct sums *sums)
+static void sum_theta_h(const struct geometry *g, const struct measurement *measurement,
+			const struct cook_torrance *model, const struct parts *parts, int i, bool by_row,
+			struct sums *sums)
 {
 	struct row row = {.n = 0};
 
 	for (int n = g->first[i]; n < g->first[i + 1]; n++) {
 		const double c = cos_product(g, n);
 
-		add_entries(&row, g, samples, n, c, lobe_at(parts, g, n, c));
+		add_entries(&row, g, measurement, n, c, lobe_at(parts, g, n, c));
 		if (n + 1 == g->first[i + 1] || g->row[n + 1] != g->row[n]) {
-			const int j = g->row[n] % SAMPLES_THETA_D;
+			const int j = g->row[n] % MERL_THETA_D;
 
 			sum_row(&row, model, cell_measure(i, j), &sums[by_row ? j : 0]);
 			row.n = 0;
@@ -164,19 +165,19 @@ static void sum_theta_h(const struct geometry *g, const struct samples *samples,
 	}
 }
 
-enum status metrics_compute(const struct geometry *g, const struct samples *samples, const struct cook_torrance *model,
-			    int threads, struct fit_metrics *metrics)
+enum status metrics_compute(const struct geometry *g, const struct measurement *measurement,
+			    const struct cook_torrance *model, int threads, struct fit_metrics *metrics)
 {
-	struct sums sums[SAMPLES_THETA_H] = {{.n = 0}}, all = {.n = 0};
+	struct sums sums[MERL_THETA_H] = {{.n = 0}}, all = {.n = 0};
 	struct parts parts;
 
 	if (parts_init(&parts, g, model) != STATUS_OK)
 		return STATUS_NO_MEMORY;
 #pragma omp parallel for num_threads(threads) schedule(dynamic) if (threads > 1)
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		sum_theta_h(g, samples, model, &parts, i, false, &sums[i]);
+	for (int i = 0; i < MERL_THETA_H; i++)
+		sum_theta_h(g, measurement, model, &parts, i, false, &sums[i]);
 	masking_free(&parts.masking);
-	for (int i = 0; i < SAMPLES_THETA_H; i++) {
+	for (int i = 0; i < MERL_THETA_H; i++) {
 		for (int w = 0; w < WEIGHT_COUNT; w++) {
 			all.difference[w] += sums[i].difference[w];
 			all.measured[w] += sums[i].measured[w];
@@ -197,10 +198,10 @@ enum status metrics_compute(const struct geometry *g, const struct samples *samp
 	return STATUS_OK;
 }
 
-enum status metrics_rows(const struct geometry *g, const struct samples *samples, const struct cook_torrance *model,
-			 int threads, struct metrics_row row[TABLE_ROWS])
+enum status metrics_rows(const struct geometry *g, const struct measurement *measurement,
+			 const struct cook_torrance *model, int threads, struct metrics_row row[MERL_ROWS])
 {
-	struct sums *sums = calloc(TABLE_ROWS, sizeof *sums);
+	struct sums *sums = calloc(MERL_ROWS, sizeof *sums);
 	struct parts parts;
 
 	if (!sums || parts_init(&parts, g, model) != STATUS_OK) {
@@ -208,10 +209,10 @@ enum status metrics_rows(const struct geometry *g, const struct samples *samples
 		return STATUS_NO_MEMORY;
 	}
 #pragma omp parallel for num_threads(threads) schedule(dynamic) if (threads > 1)
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		sum_theta_h(g, samples, model, &parts, i, true, sums + (size_t)i * SAMPLES_THETA_D);
+	for (int i = 0; i < MERL_THETA_H; i++)
+		sum_theta_h(g, measurement, model, &parts, i, true, sums + (size_t)i * MERL_THETA_D);
 	masking_free(&parts.masking);
-	for (int n = 0; n < TABLE_ROWS; n++)
+	for (int n = 0; n < MERL_ROWS; n++)
 		row[n] = (struct metrics_row){sums[n].difference[g->weight], sums[n].measured[g->weight], sums[n].n};
 	free(sums);
 	return STATUS_OK;

@@ -3,12 +3,12 @@
 #ifndef METRICS_H
 #define METRICS_H
 
-#include "fit/error/table.h"
+#include "fit/error/sample_set.h"
 
 /* metrics_compute - compares `model` with the entries of `samples` that `geometry` has and that are valid.
  * Accuracy: relative error below 1e-7 of each metric against a sum of exact model values.
  * Errors: STATUS_NO_DATA when no entry is valid or all are zero, STATUS_NO_MEMORY. */
-MUST_CHECK enum status metrics_compute(const struct geometry *geometry, const struct samples *samples,
+MUST_CHECK enum status metrics_compute(const struct geometry *geometry, const struct measurement *measurement,
 				       const struct cook_torrance *model, int threads, struct fit_metrics *metrics);
 
 /* struct metrics_row - the entries of one (theta_h, theta_d), over phi_d and the channels, under the geometry's weight w.
@@ -21,7 +21,7 @@ struct metrics_row {
 
 /* metrics_rows - row[theta_d index + 90 theta_h index]: the sums that E is made of. The sum of all differences over that
  * of all measured is E as metrics_compute() gives it, to rounding. STATUS_NO_MEMORY. */
-MUST_CHECK enum status metrics_rows(const struct geometry *geometry, const struct samples *samples,
-				    const struct cook_torrance *model, int threads, struct metrics_row row[TABLE_ROWS]);
+MUST_CHECK enum status metrics_rows(const struct geometry *geometry, const struct measurement *measurement,
+				    const struct cook_torrance *model, int threads, struct metrics_row row[MERL_ROWS]);
 
 #endif

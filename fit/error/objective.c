@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum status objective_init(struct objective *o, const struct table *table, const struct fit_options *options,
+enum status objective_init(struct objective *o, const struct sample_set *table, const struct fit_options *options,
 			   const struct ndf_class *class, int threads, enum masking_density density)
 {
 	*o = (struct objective){
@@ -56,7 +56,7 @@ static void tabulate_ndf(struct objective *o, const struct ndf *ndf)
 {
 	const struct geometry *g = o->table->geometry;
 
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
+	for (int i = 0; i < MERL_THETA_H; i++)
 		o->D[i] = ndf_D(ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
 	if (o->options->gaf != GAF_V_GROOVE)
 		masking_fill(&o->masking, ndf);
@@ -85,19 +85,19 @@ static enum status tabulate(struct objective *o, const struct shape *shape)
 	return STATUS_OK;
 }
 
-/* D F beyond this, a sigma below 1e-10, counts as this: times the largest geo, 1/(4 1e-9 1e-9), it is still a float. */
+/* D F beyond this, a sigma below 1e-10, counts as this: times the largest geometric_factor, 1/(4 1e-9 1e-9), it is still a float. */
 #define ROW_MAX 1e20
 
 static void fill_rows(struct objective *o, const struct shape *shape)
 {
-	float F[SAMPLES_THETA_D];
+	float F[MERL_THETA_D];
 
-	for (int j = 0; j < SAMPLES_THETA_D; j++)
+	for (int j = 0; j < MERL_THETA_D; j++)
 		F[j] = (float)fresnel_F(o->options->fresnel, o->table->geometry->entries.theta[j].cos_d, shape->ior,
 					shape->k);
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		for (int j = 0; j < SAMPLES_THETA_D; j++)
-			o->row[j + SAMPLES_THETA_D * i] = (float)fmin(o->D[i], ROW_MAX) * F[j];
+	for (int i = 0; i < MERL_THETA_H; i++)
+		for (int j = 0; j < MERL_THETA_D; j++)
+			o->row[j + MERL_THETA_D * i] = (float)fmin(o->D[i], ROW_MAX) * F[j];
 }
 
 static void lobe_block(struct objective *o, int block)
@@ -106,7 +106,7 @@ static void lobe_block(struct objective *o, int block)
 						       [GAF_CORRELATED] = KERNEL_CORRELATED,
 						       [GAF_V_GROOVE] = KERNEL_STATIC};
 	const struct kernel_g1 g1 = masking_kernel(&o->masking);
-	const struct kernel_slots slots = table_slots(o->table, block);
+	const struct kernel_samples slots = sample_set_block(o->table, block);
 
 	o->kernel->lobe(gaf[o->options->gaf], &g1, o->row, &slots, o->s + (size_t)block * KERNEL_BLOCK);
 }
@@ -114,19 +114,19 @@ static void lobe_block(struct objective *o, int block)
 /* What a pass is asked by each of the problems, one a channel or one for all of them. */
 struct look {
 	int n_problems;
-	bool wanted[SAMPLES_CHANNELS];
-	struct kernel_look at[SAMPLES_CHANNELS];
+	bool wanted[MERL_CHANNELS];
+	struct kernel_evaluation at[MERL_CHANNELS];
 };
 
 static void pass_block(struct objective *o, const struct look *look, int block)
 {
-	const struct table *t = o->table;
+	const struct sample_set *t = o->table;
 	const size_t at = (size_t)block * KERNEL_BLOCK;
-	const int members = (block < t->n_pair_blocks ? 2 : 1) * SAMPLES_CHANNELS / look->n_problems;
+	const int members = (block < t->n_pair_blocks ? 2 : 1) * MERL_CHANNELS / look->n_problems;
 
 	for (int p = 0; p < look->n_problems; p++)
 		if (look->wanted[p])
-			o->kernel->pass(members, table_value(t, block, p), t->w + at, o->s + at, &look->at[p],
+			o->kernel->pass(members, sample_set_value(t, block, p), t->w + at, o->s + at, &look->at[p],
 					&o->sums[block][p]);
 }
 
@@ -174,7 +174,7 @@ enum status objective_lobe(struct objective *o, const struct shape *shape)
 	return STATUS_OK;
 }
 
-double objective_most(const struct fit_options *options, bool specular)
+double objective_upper_bound(const struct fit_options *options, bool specular)
 {
 	if (options->blend > 0)
 		return specular ? options->blend : 1 - options->blend;
@@ -190,10 +190,10 @@ static double diffuse_value(double kd)
 void objective_unpin(struct objective *o)
 {
 	const struct fit_options *options = o->options;
-	const double kd = options->diffuse ? diffuse_value(objective_most(options, false)) : 0;
-	const double ks = options->specular ? objective_most(options, true) : 0;
+	const double kd = options->diffuse ? diffuse_value(objective_upper_bound(options, false)) : 0;
+	const double ks = options->specular ? objective_upper_bound(options, true) : 0;
 
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+	for (int c = 0; c < MERL_CHANNELS; c++)
 		o->box[c] = (struct objective_box){{0, 0}, {kd, ks}};
 }
 
@@ -201,7 +201,7 @@ void objective_pin(struct objective *o, int channel, bool specular, double value
 {
 	const double at = specular ? (double)(float)value : diffuse_value(value);
 
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+	for (int c = 0; c < MERL_CHANNELS; c++)
 		if (c == channel || o->options->gray)
 			o->box[c].lo[specular] = o->box[c].hi[specular] = at;
 }
@@ -209,9 +209,9 @@ void objective_pin(struct objective *o, int channel, bool specular, double value
 /* The mean measurement of a problem. */
 static double mean_measured(const struct objective *o, int p)
 {
-	const struct table *t = o->table;
+	const struct sample_set *t = o->table;
 
-	return (o->options->gray ? (t->sum[0] + t->sum[1] + t->sum[2]) / SAMPLES_CHANNELS : t->sum[p]) / t->sum_w;
+	return (o->options->gray ? (t->sum[0] + t->sum[1] + t->sum[2]) / MERL_CHANNELS : t->sum[p]) / t->sum_w;
 }
 
 /* A solve that is to be this precise is one of a small step, relative: what the last one has learnt holds for it too. */
@@ -240,7 +240,7 @@ static void start(const struct objective *o, struct l1 problem[], int n_problems
 /* On the bound to the last bit: kd is then the bound itself. */
 static double kd_of(const struct objective *o, double diffuse)
 {
-	const double most = objective_most(o->options, false);
+	const double most = objective_upper_bound(o->options, false);
 
 	return diffuse < diffuse_value(most) ? diffuse * M_PI : most;
 }
@@ -250,7 +250,7 @@ static void finish(const struct objective *o, const struct l1 problem[], int n_p
 	double sum = 0;
 
 	*linear = (struct linear){.error = 0};
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+	for (int c = 0; c < MERL_CHANNELS; c++) {
 		const struct l1 *p = &problem[n_problems == 1 ? 0 : c];
 
 		linear->kd[c] = kd_of(o, p->best[0]);
@@ -275,9 +275,9 @@ static double window_floor(const struct objective *o, int p)
 double objective_eval(struct objective *o, const struct shape *shape, double tolerance, bool certify,
 		      struct linear *linear)
 {
-	const int n_problems = o->options->gray ? 1 : SAMPLES_CHANNELS;
-	struct l1 problem[SAMPLES_CHANNELS];
-	struct kernel_sums total[SAMPLES_CHANNELS];
+	const int n_problems = o->options->gray ? 1 : MERL_CHANNELS;
+	struct l1 problem[MERL_CHANNELS];
+	struct kernel_sums total[MERL_CHANNELS];
 	bool lobe = true, going = true;
 
 	if (tabulate(o, shape) != STATUS_OK) {
@@ -291,8 +291,8 @@ double objective_eval(struct objective *o, const struct shape *shape, double tol
 
 		for (int p = 0; p < n_problems; p++) {
 			look.wanted[p] = !problem[p].done;
-			look.at[p] = (struct kernel_look){problem[p].x[0], problem[p].x[1], problem[p].tau,
-							  window_floor(o, p)};
+			look.at[p] = (struct kernel_evaluation){problem[p].x[0], problem[p].x[1], problem[p].tau,
+								window_floor(o, p)};
 		}
 		pass(o, &look, lobe, total);
 		lobe = going = false;
@@ -310,18 +310,18 @@ double objective_eval(struct objective *o, const struct shape *shape, double tol
 double objective_error(struct objective *o, const struct shape *shape, const double kd[], const double ks[])
 {
 	double error = 0, sum = 0;
-	struct kernel_sums total[SAMPLES_CHANNELS];
-	struct look look = {.n_problems = SAMPLES_CHANNELS};
+	struct kernel_sums total[MERL_CHANNELS];
+	struct look look = {.n_problems = MERL_CHANNELS};
 
 	if (tabulate(o, shape) != STATUS_OK)
 		return OBJECTIVE_NO_FIT;
 	fill_rows(o, shape);
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+	for (int c = 0; c < MERL_CHANNELS; c++) {
 		look.wanted[c] = true;
-		look.at[c] = (struct kernel_look){.d = kd[c] / M_PI, .ks = ks[c]};
+		look.at[c] = (struct kernel_evaluation){.d = kd[c] / M_PI, .ks = ks[c]};
 	}
 	pass(o, &look, true, total);
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+	for (int c = 0; c < MERL_CHANNELS; c++) {
 		error += total[c].error;
 		sum += o->table->sum[c];
 	}

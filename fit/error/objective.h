@@ -5,7 +5,7 @@
 
 #include "fit/error/l1.h"
 #include "fit/error/masking.h"
-#include "fit/error/table.h"
+#include "fit/error/sample_set.h"
 
 /* struct shape - what a fit searches: the parameters in which the model is not linear. */
 struct shape {
@@ -19,38 +19,38 @@ MUST_CHECK enum status shape_ndf(const struct shape *shape, const struct ndf_cla
 
 /* struct linear - the parameters in which it is, and how good they are. */
 struct linear {
-	double kd[SAMPLES_CHANNELS], ks[SAMPLES_CHANNELS];
-	double error;                     /* E */
-	double h[SAMPLES_CHANNELS][3];    /* what the solve has learnt of the second derivatives by (kd/pi, ks) */
-	double channel[SAMPLES_CHANNELS]; /* the part of E that each has; of a gray fit the first stands for all */
-	double lower_bound;               /* no kd, ks of this shape goes below it (certified looks only; else 0) */
+	double kd[MERL_CHANNELS], ks[MERL_CHANNELS];
+	double error;                  /* E */
+	double h[MERL_CHANNELS][3];    /* what the solve has learnt of the second derivatives by (kd/pi, ks) */
+	double channel[MERL_CHANNELS]; /* the part of E that each has; of a gray fit the first stands for all */
+	double lower_bound;            /* no kd, ks of this shape goes below it (certified looks only; else 0) */
 };
 
 /* An error that no fit can have (kd = ks = 0 gives 1), finite as nlopt wants it. */
 #define OBJECTIVE_NO_FIT 1e3
 
 struct objective {
-	const struct table *table;
+	const struct sample_set *table;
 	const struct fit_options *options;
 	const struct ndf_class *class;
 	const struct kernel *kernel;
 	int threads;            /* more than 1: called by one thread of an OpenMP team, whose others help */
 	struct masking masking; /* G1 of the shape */
 	float *s;               /* the lobe, a float a slot */
-	struct kernel_sums (*sums)[SAMPLES_CHANNELS]; /* one set a block */
-	double D[SAMPLES_THETA_H];
-	float row[TABLE_ROWS];
+	struct kernel_sums (*sums)[MERL_CHANNELS]; /* one set a block */
+	double D[MERL_THETA_H];
+	float row[MERL_ROWS];
 	bool given;             /* objective_use() has said which D and G1 */
 	struct shape tabulated; /* sigma and gamma that masking and D stand for */
 	long passes;            /* over the table, so far */
 	struct linear start;    /* where the next inner solve begins: the last one's end */
 	struct objective_box {
 		double lo[2], hi[2]; /* of kd/pi and ks */
-	} box[SAMPLES_CHANNELS];     /* as the options have it, but for what is pinned */
+	} box[MERL_CHANNELS];        /* as the options have it, but for what is pinned */
 };
 
 /* objective_init - buffers for one table and one NDF. */
-MUST_CHECK enum status objective_init(struct objective *objective, const struct table *table,
+MUST_CHECK enum status objective_init(struct objective *objective, const struct sample_set *table,
 				      const struct fit_options *options, const struct ndf_class *class, int threads,
 				      enum masking_density density);
 void objective_free(struct objective *objective);
@@ -59,8 +59,8 @@ void objective_free(struct objective *objective);
 void objective_forget(struct objective *objective);
 void objective_begin(struct objective *objective, const struct linear *linear);
 
-/* objective_most - the upper end of kd, or of ks: far beyond any material when unbounded. */
-double objective_most(const struct fit_options *options, bool specular);
+/* objective_upper_bound - the upper end of kd, or of ks: far beyond any material when unbounded. */
+double objective_upper_bound(const struct fit_options *options, bool specular);
 /* objective_pin - holds kd (or ks) of a channel, of all of them in a gray fit, at a value from now on;
  * objective_unpin - all are free again. */
 void objective_pin(struct objective *objective, int channel, bool specular, double value);

@@ -45,9 +45,9 @@ enum status export_write(const struct export *export, FILE *file, struct error *
 	return targets[export->format]->write(export, file, error);
 }
 
-enum status export_table(const struct export *export, struct samples *samples)
+enum status export_table(const struct export *export, struct measurement *measurement)
 {
-	return model_table(&export->model, export->source.fit->bins, 180, 90, export->source.fit->threads, samples);
+	return model_table(&export->model, export->source.fit->bins, 180, 90, export->source.fit->threads, measurement);
 }
 
 enum status export_as_it_is(struct export *export, const char *text)

@@ -26,11 +26,11 @@ MUST_CHECK enum status export_format_find(const char *name, enum export_format *
 
 /* struct export_source - a model and where it is from; all borrowed. */
 struct export_source {
-	const struct cook_torrance *model; /* isotropic */
-	const struct fit_options *fit;     /* weight, bins and max_theta it was fitted under; threads; cancel */
-	double error;                      /* E under that weight; NaN: not known */
-	const char *material, *path;       /* either may be NULL */
-	const struct samples *samples;     /* what it was fitted to; NULL: not at hand */
+	const struct cook_torrance *model;     /* isotropic */
+	const struct fit_options *fit;         /* weight, bins and max_theta it was fitted under; threads; cancel */
+	double error;                          /* E under that weight; NaN: not known */
+	const char *material, *path;           /* either may be NULL */
+	const struct measurement *measurement; /* what it was fitted to; NULL: not at hand */
 };
 
 enum { EXPORT_TEXT = 512 };
@@ -61,7 +61,7 @@ MUST_CHECK enum status export_prepare(struct export *export, enum export_format 
  * Returns STATUS_OK, STATUS_UNSUPPORTED (a number of the model is out of the target's range), STATUS_NO_MEMORY. */
 MUST_CHECK enum status export_write(const struct export *export, FILE *file, struct error *error);
 
-/* export_table - EXPORT_MERL: the table to write, 180 entries along phi_d, to be freed with samples_free(). */
-MUST_CHECK enum status export_table(const struct export *export, struct samples *samples);
+/* export_table - EXPORT_MERL: the table to write, 180 entries along phi_d, to be freed with measurement_free(). */
+MUST_CHECK enum status export_table(const struct export *export, struct measurement *measurement);
 
 #endif

@@ -5,7 +5,7 @@
  * D of GGX with sigma = roughness^2, G height-correlated: so every export is approximate, and its error is measured with
  * that formula. s = max ks, specularColor = ks/s. */
 #include "fit/error/entries.h"
-#include "fit/error/table.h"
+#include "fit/error/sample_set.h"
 #include "fit/export/export_format.h"
 #include "fit/export/stand_in.h"
 #include "fit/results/csv_number.h"
@@ -39,37 +39,37 @@ static void gltf_f(const struct cook_torrance *model, struct vec3 wi, struct vec
 }
 
 /* Sums of row i of the table: w |m - f| and w m. */
-static void add_row(const struct export *export, const struct samples *samples, const struct entries *entries, int i,
-		    double sum[2])
+static void add_row(const struct export *export, const struct measurement *measurement, const struct entries *entries,
+		    int i, double sum[2])
 {
 	const struct fit_options *fit = export->source.fit;
 	const double min_cos = max_theta_cos(fit->max_theta);
-	for (int j = 0; j < SAMPLES_THETA_D; j++)
-		for (int k = 0; k < samples->n_phi_d; k++) {
-			const size_t at = samples_at(samples->n_phi_d, i, j, k);
+	for (int j = 0; j < MERL_THETA_D; j++)
+		for (int k = 0; k < measurement->n_phi_d; k++) {
+			const size_t at = measurement_at(measurement->n_phi_d, i, j, k);
 			struct vec3 wi, wo;
 			double f[3];
 			entries_dirs(entries, i, j, k, &wi, &wo);
-			if (isnan(samples->value[0][at]) || !entry_in_range(wi, wo, min_cos))
+			if (isnan(measurement->value[0][at]) || !entry_in_range(wi, wo, min_cos))
 				continue;
 			gltf_f(&export->model, wi, wo, f);
 			const double w = weight_at(fit->weight, i, j, wi.z, wo.z);
-			for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-				sum[0] += w * fabs((double)samples->value[c][at] - f[c]);
-				sum[1] += w * (double)samples->value[c][at];
+			for (int c = 0; c < MERL_CHANNELS; c++) {
+				sum[0] += w * fabs((double)measurement->value[c][at] - f[c]);
+				sum[1] += w * (double)measurement->value[c][at];
 			}
 		}
 }
 
 /* E of what a viewer makes of the model. */
-static double gltf_error(const struct export *export, const struct samples *samples)
+static double gltf_error(const struct export *export, const struct measurement *measurement)
 {
-	const struct entries entries = entries_make(export->source.fit->bins, samples->n_phi_d);
-	double sum[SAMPLES_THETA_H][2] = {{0}}, difference = 0, all = 0;
+	const struct entries entries = entries_make(export->source.fit->bins, measurement->n_phi_d);
+	double sum[MERL_THETA_H][2] = {{0}}, difference = 0, all = 0;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(export->source.fit->threads)
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		add_row(export, samples, &entries, i, sum[i]);
-	for (int i = 0; i < SAMPLES_THETA_H; i++) {
+	for (int i = 0; i < MERL_THETA_H; i++)
+		add_row(export, measurement, &entries, i, sum[i]);
+	for (int i = 0; i < MERL_THETA_H; i++) {
 		difference += sum[i][0];
 		all += sum[i][1];
 	}
@@ -78,7 +78,7 @@ static double gltf_error(const struct export *export, const struct samples *samp
 
 static enum status gltf_prepare(struct export *export, struct error *error)
 {
-	struct samples own;
+	struct measurement own;
 	const enum status status = stand_in_prepare(export, &target, error);
 	if (status)
 		return status;
@@ -91,14 +91,14 @@ static enum status gltf_prepare(struct export *export, struct error *error)
 	const size_t used = strlen(export->why);
 	snprintf(export->why + used, sizeof export->why - used,
 		 "%s glTF takes what the surface reflects from the diffuse part", export->stand_in ? ", and" : "");
-	const struct samples *samples = stand_in_samples(&export->source, &own);
-	if (!samples)
+	const struct measurement *measurement = stand_in_samples(&export->source, &own);
+	if (!measurement)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	const size_t told = strlen(export->cost);
 	snprintf(export->cost + told, sizeof export->cost - told, "%serror of what a glTF viewer shows %.5g%s",
-		 told ? "; " : "", gltf_error(export, samples),
-		 told || export->source.samples ? "" : " (against a table of the model itself)");
-	samples_free(&own);
+		 told ? "; " : "", gltf_error(export, measurement),
+		 told || export->source.measurement ? "" : " (against a table of the model itself)");
+	measurement_free(&own);
 	return STATUS_OK;
 }
 

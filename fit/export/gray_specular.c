@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/export/gray_specular.h"
 #include "fit/error/entries.h"
-#include "fit/error/table.h"
+#include "fit/error/sample_set.h"
 
 #include <stdlib.h>
 
@@ -31,17 +31,17 @@ static double weighted_median(struct wanted *wanted, size_t n)
 }
 
 /* The lobe and the weight at each entry that takes part, as lobe = kd in *wanted; at[] says which entries. */
-static size_t look(const struct samples *samples, const struct fit_options *fit, const struct cook_torrance *model,
-		   struct wanted *wanted, size_t *at)
+static size_t look(const struct measurement *measurement, const struct fit_options *fit,
+		   const struct cook_torrance *model, struct wanted *wanted, size_t *at)
 {
-	const struct entries entries = entries_make(fit->bins, samples->n_phi_d);
+	const struct entries entries = entries_make(fit->bins, measurement->n_phi_d);
 	const double min_cos = max_theta_cos(fit->max_theta);
 	size_t n = 0, entry = 0;
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		for (int j = 0; j < SAMPLES_THETA_D; j++)
-			for (int k = 0; k < samples->n_phi_d; k++, entry++) {
+	for (int i = 0; i < MERL_THETA_H; i++)
+		for (int j = 0; j < MERL_THETA_D; j++)
+			for (int k = 0; k < measurement->n_phi_d; k++, entry++) {
 				struct vec3 wi, wo;
-				if (isnan(samples->value[0][entry]))
+				if (isnan(measurement->value[0][entry]))
 					continue;
 				entries_dirs(&entries, i, j, k, &wi, &wo);
 				if (!entry_in_range(wi, wo, min_cos))
@@ -53,17 +53,18 @@ static size_t look(const struct samples *samples, const struct fit_options *fit,
 	return n;
 }
 
-enum status gray_specular(const struct samples *samples, const struct fit_options *fit, struct cook_torrance *model)
+enum status gray_specular(const struct measurement *measurement, const struct fit_options *fit,
+			  struct cook_torrance *model)
 {
 	const double ks = (model->ks[0] + model->ks[1] + model->ks[2]) / 3;
-	struct wanted *lobe = calloc(samples_count(samples), sizeof *lobe);
-	struct wanted *wanted = calloc(samples_count(samples), sizeof *wanted);
-	size_t *at = calloc(samples_count(samples), sizeof *at);
+	struct wanted *lobe = calloc(measurement_count(measurement), sizeof *lobe);
+	struct wanted *wanted = calloc(measurement_count(measurement), sizeof *wanted);
+	size_t *at = calloc(measurement_count(measurement), sizeof *at);
 	const bool ready = lobe && wanted && at;
-	const size_t n = ready ? look(samples, fit, model, lobe, at) : 0;
-	for (int c = 0; c < SAMPLES_CHANNELS && ready; c++) {
+	const size_t n = ready ? look(measurement, fit, model, lobe, at) : 0;
+	for (int c = 0; c < MERL_CHANNELS && ready; c++) {
 		for (size_t i = 0; i < n; i++) {
-			const double rest = (double)samples->value[c][at[i]] - ks * (double)lobe[i].kd;
+			const double rest = (double)measurement->value[c][at[i]] - ks * (double)lobe[i].kd;
 			wanted[i] = (struct wanted){(float)(M_PI * rest), lobe[i].weight};
 		}
 		model->ks[c] = ks;

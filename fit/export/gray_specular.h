@@ -8,7 +8,7 @@
 
 /* gray_specular - sets each ks to their mean, and each kd to what minimises E under the options' weight, bins and
  * max_theta: the weighted median of pi (m - ks lobe), within [0, 1 - ks]. STATUS_NO_MEMORY leaves *model as it was. */
-MUST_CHECK enum status gray_specular(const struct samples *samples, const struct fit_options *fit,
+MUST_CHECK enum status gray_specular(const struct measurement *measurement, const struct fit_options *fit,
 				     struct cook_torrance *model);
 
 #endif

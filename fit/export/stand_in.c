@@ -74,11 +74,11 @@ bool stand_in_needed(const struct target *target, const struct cook_torrance *mo
 	return length > 0;
 }
 
-const struct samples *stand_in_samples(const struct export_source *source, struct samples *own)
+const struct measurement *stand_in_samples(const struct export_source *source, struct measurement *own)
 {
-	*own = (struct samples){0};
-	if (source->samples)
-		return source->samples;
+	*own = (struct measurement){0};
+	if (source->measurement)
+		return source->measurement;
 	return model_table(source->model, source->fit->bins, 180, source->fit->max_theta, source->fit->threads, own)
 		       ? NULL
 		       : own;
@@ -117,12 +117,12 @@ static struct fit_options options_for(const struct target *target, const struct 
 }
 
 /* The best of the options' distributions, into *model; *value receives its error. */
-static enum status fit_once(const struct fit_context *context, const struct samples *samples,
+static enum status fit_once(const struct fit_context *context, const struct measurement *measurement,
 			    const struct fit_options *fit, struct cook_torrance *model, double *value,
 			    struct error *error)
 {
 	struct fit_result result[FIT_NDFS_MAX];
-	const enum status status = fit_run(context, samples, fit, result, error);
+	const enum status status = fit_run(context, measurement, fit, result, error);
 	*value = INFINITY;
 	for (int i = 0; i < fit->n_ndf && !status; i++) {
 		if (result[i].error < *value) {
@@ -143,7 +143,8 @@ enum { BLEND_SCAN = 16, BLEND_STEPS = 6 };
 
 /* About the best weight of the lobe and the best of the options' distributions, as the only one of *fit: from samples of
  * the table. */
-static enum status scan_blend(const struct fit_context *context, const struct samples *samples, struct fit_options *fit)
+static enum status scan_blend(const struct fit_context *context, const struct measurement *measurement,
+			      struct fit_options *fit)
 {
 	struct fit_options tried = *fit;
 	double best = INFINITY;
@@ -156,7 +157,7 @@ static enum status scan_blend(const struct fit_context *context, const struct sa
 			double value;
 			tried.ndf[0] = fit->ndf[n];
 			tried.blend = (double)i / BLEND_SCAN;
-			status = fit_estimate(context, samples, &tried, &value);
+			status = fit_estimate(context, measurement, &tried, &value);
 			if (!status && value < best) {
 				best = value;
 				chosen = tried;
@@ -167,12 +168,12 @@ static enum status scan_blend(const struct fit_context *context, const struct sa
 }
 
 /* With a weight w, kd up to 1 - w and ks up to w; and w by golden section, around the best of the scan. */
-static enum status fit_blend(const struct fit_context *context, const struct samples *samples, struct fit_options *fit,
-			     struct cook_torrance *model, struct error *error)
+static enum status fit_blend(const struct fit_context *context, const struct measurement *measurement,
+			     struct fit_options *fit, struct cook_torrance *model, struct error *error)
 {
 	static const double golden = 0.6180339887498949;
 	double best = INFINITY, value[2] = {NAN, NAN};
-	enum status status = scan_blend(context, samples, fit);
+	enum status status = scan_blend(context, measurement, fit);
 	if (status)
 		return error_set(error, status, "%s", status_str(status));
 	double low = fit->blend - 1.0 / BLEND_SCAN, high = fit->blend + 1.0 / BLEND_SCAN;
@@ -183,7 +184,7 @@ static enum status fit_blend(const struct fit_context *context, const struct sam
 			if (!isnan(value[side]))
 				continue;
 			fit->blend = at[side];
-			status = fit_once(context, samples, fit, &tried, &value[side], error);
+			status = fit_once(context, measurement, fit, &tried, &value[side], error);
 			if (!status && value[side] < best) {
 				best = value[side];
 				*model = tried;
@@ -208,36 +209,36 @@ static void average_specular(struct cook_torrance *model)
 }
 
 /* Fits the stand-in into export->model. *blended: as a blend, which the best fit is not. */
-static enum status fit_stand_in(struct export *export, const struct target *target, const struct samples *samples,
-				bool *blended, struct error *error)
+static enum status fit_stand_in(struct export *export, const struct target *target,
+				const struct measurement *measurement, bool *blended, struct error *error)
 {
 	struct fit_options fit = options_for(target, &export->source);
 	struct fit_context *context = NULL;
 	double value;
-	enum status status = fit_context_new(&context, samples->n_phi_d, &fit);
+	enum status status = fit_context_new(&context, measurement->n_phi_d, &fit);
 	if (status)
 		return error_set(error, status, "%s", status_str(status));
-	status = fit_once(context, samples, &fit, &export->model, &value, error);
+	status = fit_once(context, measurement, &fit, &export->model, &value, error);
 	if (!status && target->sigma_max > 0 && export->model.ndf.sigma_x > target->sigma_max) {
 		fit.sigma = target->sigma_max;
-		status = fit_once(context, samples, &fit, &export->model, &value, error);
+		status = fit_once(context, measurement, &fit, &export->model, &value, error);
 	}
 	if (!status && target->gray)
 		average_specular(&export->model);
 	*blended = !status && target->blend && !fits_blend(&export->model);
 	if (*blended)
-		status = fit_blend(context, samples, &fit, &export->model, error);
-	if (!status && target->gray && fit.diffuse && gray_specular(samples, &fit, &export->model))
+		status = fit_blend(context, measurement, &fit, &export->model, error);
+	if (!status && target->gray && fit.diffuse && gray_specular(measurement, &fit, &export->model))
 		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
 	fit_context_free(context);
 	return status;
 }
 
-static enum status error_of(const struct export *export, const struct samples *samples,
+static enum status error_of(const struct export *export, const struct measurement *measurement,
 			    const struct cook_torrance *model, double *value, struct error *error)
 {
 	struct fit_metrics metrics;
-	const enum status status = fit_eval(samples, model, export->source.fit, &metrics, error);
+	const enum status status = fit_eval(measurement, model, export->source.fit, &metrics, error);
 	if (!status)
 		*value = metrics.error[export->source.fit->weight];
 	return status;
@@ -246,27 +247,27 @@ static enum status error_of(const struct export *export, const struct samples *s
 /* What the errors are against, for people. */
 static void name_data(const struct export_source *source, char name[TEXT_QUOTE_SIZE])
 {
-	if (source->samples && source->path)
+	if (source->measurement && source->path)
 		text_quote(source->path, name, TEXT_QUOTE_SIZE);
 	else
 		snprintf(name, TEXT_QUOTE_SIZE, "%s",
-			 source->samples ? "the measurement" : "a table of the model itself");
+			 source->measurement ? "the measurement" : "a table of the model itself");
 }
 
-static enum status tell_cost(struct export *export, const struct samples *samples, struct error *error)
+static enum status tell_cost(struct export *export, const struct measurement *measurement, struct error *error)
 {
 	const struct fit_options *fit = export->source.fit;
 	double before, after;
 	char name[TEXT_QUOTE_SIZE];
-	enum status status = error_of(export, samples, export->source.model, &before, error);
+	enum status status = error_of(export, measurement, export->source.model, &before, error);
 	if (!status)
-		status = error_of(export, samples, &export->model, &after, error);
+		status = error_of(export, measurement, &export->model, &after, error);
 	if (status)
 		return status;
 	name_data(&export->source, name);
 	snprintf(export->cost, sizeof export->cost,
 		 "error of the model %.5g, of what stands here %.5g (weight %s, against %s)",
-		 export->source.samples ? before : 0.0, after, weight_name(fit->weight), name);
+		 export->source.measurement ? before : 0.0, after, weight_name(fit->weight), name);
 	return STATUS_OK;
 }
 
@@ -291,7 +292,7 @@ enum status stand_in_prepare(struct export *export, const struct target *target,
 {
 	char lacks[EXPORT_TEXT] = "";
 	const struct cook_torrance *given = export->source.model;
-	struct samples own;
+	struct measurement own;
 	take(export);
 	if (target->gray && !is_gray(given->ks) && !(export_max(given->kd) > 0))
 		return error_set(error, STATUS_UNSUPPORTED,
@@ -306,13 +307,13 @@ enum status stand_in_prepare(struct export *export, const struct target *target,
 	}
 	if (!export->stand_in)
 		return check_sigma(export, target, error);
-	const struct samples *samples = stand_in_samples(&export->source, &own);
+	const struct measurement *measurement = stand_in_samples(&export->source, &own);
 	bool blended = false;
-	enum status status = samples ? fit_stand_in(export, target, samples, &blended, error)
-				     : error_set(error, STATUS_NO_MEMORY, "out of memory");
+	enum status status = measurement ? fit_stand_in(export, target, measurement, &blended, error)
+					 : error_set(error, STATUS_NO_MEMORY, "out of memory");
 	if (!status)
-		status = tell_cost(export, samples, error);
-	samples_free(&own);
+		status = tell_cost(export, measurement, error);
+	measurement_free(&own);
 	if (!status)
 		status = check_sigma(export, target, error);
 	snprintf(export->why, sizeof export->why, "approximate: %s has%.200s; %s%s was fitted in its place%s",

@@ -26,6 +26,6 @@ MUST_CHECK enum status stand_in_prepare(struct export *export, const struct targ
 
 /* stand_in_samples - what errors are measured against: the source's samples, or the model's own table, which is then
  * *own, to be freed by the caller; NULL and no memory otherwise. */
-const struct samples *stand_in_samples(const struct export_source *source, struct samples *own);
+const struct measurement *stand_in_samples(const struct export_source *source, struct measurement *own);
 
 #endif

@@ -2,16 +2,16 @@
 #include "fit/plot/error_map.h"
 #include <math.h>
 
-enum status error_map_make(const struct samples *samples, const struct cook_torrance *model,
-			   const struct fit_options *options, struct metrics_row row[TABLE_ROWS])
+enum status error_map_make(const struct measurement *measurement, const struct cook_torrance *model,
+			   const struct fit_options *options, struct metrics_row row[MERL_ROWS])
 {
 	struct fit_options own = *options;
 	struct geometry geometry;
 
 	own.gaf = model->gaf;
-	enum status status = geometry_init(&geometry, samples->n_phi_d, &own);
+	enum status status = geometry_init(&geometry, measurement->n_phi_d, &own);
 	if (status == STATUS_OK)
-		status = metrics_rows(&geometry, samples, model, options->threads, row);
+		status = metrics_rows(&geometry, measurement, model, options->threads, row);
 	geometry_free(&geometry);
 	return status;
 }

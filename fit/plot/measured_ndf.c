@@ -11,7 +11,7 @@ enum { THETA_D_MOST = 30, TAIL_NODES = 40 };
 static const double steepest = 80 * M_PI / 180;
 
 struct reading {
-	const struct samples *samples;
+	const struct measurement *measurement;
 	const struct cook_torrance *model;
 	struct entries entries;
 	struct masking masking;
@@ -38,18 +38,18 @@ static double lobe_per_D(const struct reading *r, struct vec3 wi, struct vec3 wo
 /* The wishes of entry (i, j, k), one a channel; returns how many. */
 static size_t entry_wishes(const struct reading *r, int i, int j, int k, double F, struct wish *wish)
 {
-	const struct samples *samples = r->samples;
-	const size_t at = samples_at(samples->n_phi_d, i, j, k);
+	const struct measurement *measurement = r->measurement;
+	const size_t at = measurement_at(measurement->n_phi_d, i, j, k);
 	struct vec3 wi, wo;
 	size_t n = 0;
 
 	entries_dirs(&r->entries, i, j, k, &wi, &wo);
-	if (wi.z < r->min_cos || wo.z < r->min_cos || isnan(samples->value[0][at]))
+	if (wi.z < r->min_cos || wo.z < r->min_cos || isnan(measurement->value[0][at]))
 		return 0;
 	const double lobe = lobe_per_D(r, wi, wo, F);
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+	for (int c = 0; c < MERL_CHANNELS; c++) {
 		const double per_D = r->model->ks[c] * lobe;
-		const double wanted = (double)samples->value[c][at] - r->model->kd[c] / M_PI;
+		const double wanted = (double)measurement->value[c][at] - r->model->kd[c] / M_PI;
 
 		if (per_D > 0)
 			wish[n++] = (struct wish){(float)(wanted / per_D), (float)per_D};
@@ -64,27 +64,27 @@ static double read_row(const struct reading *r, int i)
 	for (int j = 0; j <= THETA_D_MOST; j++) {
 		const double F = fresnel_F(r->model->fresnel, r->entries.theta[j].cos_d, r->model->n, r->model->k);
 
-		for (int k = 0; k < r->samples->n_phi_d; k++)
+		for (int k = 0; k < r->measurement->n_phi_d; k++)
 			n += entry_wishes(r, i, j, k, F, r->wish + n);
 	}
 	return weighted_median(r->wish, n, NAN);
 }
 
-static enum status read_rows(const struct samples *samples, const struct cook_torrance *model, enum bins bins,
+static enum status read_rows(const struct measurement *measurement, const struct cook_torrance *model, enum bins bins,
 			     double D[])
 {
-	struct reading r = {.samples = samples,
+	struct reading r = {.measurement = measurement,
 			    .model = model,
-			    .entries = entries_make(bins, samples->n_phi_d),
+			    .entries = entries_make(bins, measurement->n_phi_d),
 			    .min_cos = cos(steepest)};
-	const size_t most = (size_t)(THETA_D_MOST + 1) * (size_t)samples->n_phi_d * SAMPLES_CHANNELS;
+	const size_t most = (size_t)(THETA_D_MOST + 1) * (size_t)measurement->n_phi_d * MERL_CHANNELS;
 	const int32_t q_min = masking_q((struct vec3){sin(steepest), 0, cos(steepest)}) - 1;
 
 	r.wish = malloc(most * sizeof *r.wish);
 	const enum status status = r.wish ? masking_init(&r.masking, q_min, MASKING_FINE) : STATUS_NO_MEMORY;
 	if (status == STATUS_OK && model->gaf != GAF_V_GROOVE)
 		masking_fill(&r.masking, &model->ndf);
-	for (int i = 0; i < SAMPLES_THETA_H && status == STATUS_OK; i++)
+	for (int i = 0; i < MERL_THETA_H && status == STATUS_OK; i++)
 		D[i] = read_row(&r, i);
 	if (status == STATUS_OK)
 		masking_free(&r.masking);
@@ -105,7 +105,7 @@ static int make_nodes(const double D[], const struct cook_torrance *model, enum 
 	int n = 0;
 	double known = NAN;
 
-	for (int i = 0; i < SAMPLES_THETA_H; i++) {
+	for (int i = 0; i < MERL_THETA_H; i++) {
 		const double at = bins_angles(bins, i, 0, 0).theta_h;
 
 		if (isnan(D[i]))
@@ -136,13 +136,13 @@ static int make_nodes(const double D[], const struct cook_torrance *model, enum 
 	return n + 1;
 }
 
-enum status measured_ndf_make(const struct samples *samples, const struct cook_torrance *model, enum bins bins,
+enum status measured_ndf_make(const struct measurement *measurement, const struct cook_torrance *model, enum bins bins,
 			      struct measured_ndf *ndf)
 {
-	double theta[SAMPLES_THETA_H + TAIL_NODES + 2], value[SAMPLES_THETA_H + TAIL_NODES + 2];
+	double theta[MERL_THETA_H + TAIL_NODES + 2], value[MERL_THETA_H + TAIL_NODES + 2];
 
 	*ndf = (struct measured_ndf){.scale = NAN};
-	enum status status = read_rows(samples, model, bins, ndf->D);
+	enum status status = read_rows(measurement, model, bins, ndf->D);
 	if (status != STATUS_OK)
 		return status;
 	const int n = make_nodes(ndf->D, model, bins, theta, value);

@@ -9,12 +9,12 @@
 #ifndef MEASURED_NDF_H
 #define MEASURED_NDF_H
 
-#include "data_readers/samples.h"
+#include "data_readers/measurement.h"
 #include "src/cook_torrance.h"
 #include "src/pwl.h"
 
 struct measured_ndf {
-	double D[SAMPLES_THETA_H]; /* 1/sr; NaN where nothing was measured */
+	double D[MERL_THETA_H]; /* 1/sr; NaN where nothing was measured */
 	/* The same as a distribution, normalised, for its G1. Beyond the last theta_h with data the fit's own tail goes
 	 * on from there (that of a free form as it is): masking comes from steep facets that no table shows. */
 	struct pwl pwl;
@@ -24,7 +24,7 @@ struct measured_ndf {
 /* measured_ndf_make - reads the NDF off `samples`.
  * Errors: STATUS_NO_DATA: the model has no specular term, or no entry that counts shows one; STATUS_NO_MEMORY.
  * *ndf is then empty. */
-MUST_CHECK enum status measured_ndf_make(const struct samples *samples, const struct cook_torrance *model,
+MUST_CHECK enum status measured_ndf_make(const struct measurement *measurement, const struct cook_torrance *model,
 					 enum bins bins, struct measured_ndf *ndf);
 void measured_ndf_free(struct measured_ndf *ndf);
 

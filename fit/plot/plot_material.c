@@ -69,7 +69,7 @@ static enum status read_ndfs(const struct material_data *data, struct readings *
 	for (int f = 0; f < data->n; f++) {
 		const struct fitted *fit = &data->fit[f];
 		const enum status status =
-			measured_ndf_make(&data->samples, &fit->model, fit->options.bins, &readings->ndf[f]);
+			measured_ndf_make(&data->measurement, &fit->model, fit->options.bins, &readings->ndf[f]);
 		if (status == STATUS_NO_MEMORY)
 			return error_set(error, status, "out of memory");
 		readings->made[f] = status == STATUS_OK;
@@ -101,7 +101,7 @@ static enum status write_D(const char *directory, const struct material_data *da
 	if (status)
 		return status;
 	put_header(file.stream, "theta_h_deg", data, what, 2);
-	for (int i = 0; i < SAMPLES_THETA_H; i++) {
+	for (int i = 0; i < MERL_THETA_H; i++) {
 		fprintf(file.stream, "%.9g", theta_h_deg(bins_of(data), i));
 		const struct halfdiff_trig h = bins_trig(bins_of(data), i, 0, 0);
 		for (int f = 0; f < data->n; f++) {
@@ -211,21 +211,21 @@ static const int slice_theta_d[] = {0, 15, 30, 45, 60, 75};
 enum { SLICES = sizeof slice_theta_d / sizeof *slice_theta_d, SLICE_MEAN = 3 /* column of the first mean */ };
 
 /* Three channels and their mean. */
-static double put_channels(FILE *file, const double f[SAMPLES_CHANNELS])
+static double put_channels(FILE *file, const double f[MERL_CHANNELS])
 {
-	const double mean = (f[0] + f[1] + f[2]) / SAMPLES_CHANNELS;
+	const double mean = (f[0] + f[1] + f[2]) / MERL_CHANNELS;
 	plot_number(file, mean);
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+	for (int c = 0; c < MERL_CHANNELS; c++)
 		plot_number(file, f[c]);
 	return mean;
 }
 
 static void put_slice(FILE *file, const struct material_data *data, int j, struct plot_range *range)
 {
-	for (int i = 0; i < SAMPLES_THETA_H; i++) {
-		double f[SAMPLES_CHANNELS];
+	for (int i = 0; i < MERL_THETA_H; i++) {
+		double f[MERL_CHANNELS];
 		fprintf(file, "%.9g,%.9g", theta_d_deg(bins_of(data), j), theta_h_deg(bins_of(data), i));
-		slice_measured(&data->samples, i, j, f);
+		slice_measured(&data->measurement, i, j, f);
 		plot_range_add(range, put_channels(file, f));
 		for (int n = 0; n < data->n; n++) {
 			slice_model(&data->fit[n].model, data->fit[n].options.bins, i, j, f);
@@ -259,7 +259,7 @@ static int slices_legend(const struct material_data *data)
 /* The lines of one panel stand together in the file. */
 static void put_slice_panel(FILE *file, const struct material_data *data, int s)
 {
-	const int from = 1 + s * SAMPLES_THETA_H, to = from + SAMPLES_THETA_H - 1;
+	const int from = 1 + s * MERL_THETA_H, to = from + MERL_THETA_H - 1;
 	const bool left = s % 3 == 0, bottom = s >= SLICES - 3;
 	fprintf(file, "set title \"θ_d = %g°\"\n%s\n", theta_d_deg(bins_of(data), slice_theta_d[s]),
 		s > 0                     ? "unset key"
@@ -313,7 +313,7 @@ static enum status make_maps(const struct material_data *data, struct metrics_ro
 	for (int f = 0; f < data->n; f++) {
 		const struct fitted *fit = &data->fit[f];
 		const enum status status =
-			error_map_make(&data->samples, &fit->model, &fit->options, rows + (size_t)f * TABLE_ROWS);
+			error_map_make(&data->measurement, &fit->model, &fit->options, rows + (size_t)f * MERL_ROWS);
 		if (status)
 			return error_set(error, status, "%s", status_str(status));
 	}
@@ -329,12 +329,12 @@ static enum status write_maps(const char *directory, const struct material_data 
 	if (status)
 		return status;
 	put_header(file.stream, "theta_h_index,theta_d_index,theta_h_deg,theta_d_deg,samples", data, what, 1);
-	for (int n = 0; n < TABLE_ROWS; n++) {
-		const int i = n / SAMPLES_THETA_D, j = n % SAMPLES_THETA_D;
+	for (int n = 0; n < MERL_ROWS; n++) {
+		const int i = n / MERL_THETA_D, j = n % MERL_THETA_D;
 		fprintf(file.stream, "%d,%d,%.9g,%.9g,%zu", i, j, theta_h_deg(bins_of(data), i),
 			theta_d_deg(bins_of(data), j), rows[n].samples);
 		for (int f = 0; f < data->n; f++) {
-			const double e = error_map_error(&rows[(size_t)f * TABLE_ROWS + (size_t)n]);
+			const double e = error_map_error(&rows[(size_t)f * MERL_ROWS + (size_t)n]);
 			plot_number(file.stream, isinf(e) ? 1e9 : e); /* gnuplot has no colour for infinity */
 		}
 		fputc('\n', file.stream);
@@ -418,7 +418,7 @@ static enum status write_map_script(const char *directory, const struct material
 
 enum status plot_map(const char *directory, const struct material_data *data, struct error *error)
 {
-	struct metrics_row *rows = calloc((size_t)data->n * TABLE_ROWS, sizeof(*rows));
+	struct metrics_row *rows = calloc((size_t)data->n * MERL_ROWS, sizeof(*rows));
 	if (!rows)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	enum status status = make_maps(data, rows, error);

@@ -3,15 +3,15 @@
 
 enum { MIDDLE = 90 }; /* index of phi_d, in the 360 table too */
 
-void slice_measured(const struct samples *samples, int i, int j, double m[SAMPLES_CHANNELS])
+void slice_measured(const struct measurement *measurement, int i, int j, double m[MERL_CHANNELS])
 {
-	const size_t at = samples_at(samples->n_phi_d, i, j, MIDDLE);
+	const size_t at = measurement_at(measurement->n_phi_d, i, j, MIDDLE);
 
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		m[c] = (double)samples->value[c][at];
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		m[c] = (double)measurement->value[c][at];
 }
 
-void slice_model(const struct cook_torrance *model, enum bins bins, int i, int j, double f[SAMPLES_CHANNELS])
+void slice_model(const struct cook_torrance *model, enum bins bins, int i, int j, double f[MERL_CHANNELS])
 {
 	struct vec3 wi, wo;
 

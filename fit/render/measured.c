@@ -6,33 +6,33 @@
 
 static float *entry_at(const struct measured *m, int i, int j, int k)
 {
-	return m->value + SAMPLES_CHANNELS * samples_at(m->n_phi_d, i, j, k);
+	return m->value + MERL_CHANNELS * measurement_at(m->n_phi_d, i, j, k);
 }
 
-static void fill_row(struct measured *m, const struct samples *samples, int i, int j)
+static void fill_row(struct measured *m, const struct measurement *measurement, int i, int j)
 {
 	for (int k = 0; k < m->n_phi_d; k++) {
-		const size_t at = samples_at(m->n_phi_d, i, j, k);
+		const size_t at = measurement_at(m->n_phi_d, i, j, k);
 		float *entry = entry_at(m, i, j, k);
-		if (!isnan(samples->value[0][at]))
-			for (int c = 0; c < SAMPLES_CHANNELS; c++)
-				entry[c] = samples->value[c][at];
+		if (!isnan(measurement->value[0][at]))
+			for (int c = 0; c < MERL_CHANNELS; c++)
+				entry[c] = measurement->value[c][at];
 		else if (i || j)
 			memcpy(entry, j ? entry_at(m, i, j - 1, k) : entry_at(m, i - 1, j, k),
-			       SAMPLES_CHANNELS * sizeof *entry);
+			       MERL_CHANNELS * sizeof *entry);
 	}
 }
 
-enum status measured_init(struct measured *m, const struct samples *samples, enum bins bins)
+enum status measured_init(struct measured *m, const struct measurement *measurement, enum bins bins)
 {
 	*m = (struct measured){.bins = bins,
-			       .n_phi_d = samples->n_phi_d,
-			       .value = calloc(samples_count(samples), SAMPLES_CHANNELS * sizeof(float))};
+			       .n_phi_d = measurement->n_phi_d,
+			       .value = calloc(measurement_count(measurement), MERL_CHANNELS * sizeof(float))};
 	if (!m->value)
 		return STATUS_NO_MEMORY;
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		for (int j = 0; j < SAMPLES_THETA_D; j++)
-			fill_row(m, samples, i, j);
+	for (int i = 0; i < MERL_THETA_H; i++)
+		for (int j = 0; j < MERL_THETA_D; j++)
+			fill_row(m, measurement, i, j);
 	return STATUS_OK;
 }
 
@@ -70,15 +70,15 @@ void measured_f(const struct measured *m, struct vec3 wi, struct vec3 wo, double
 		return;
 	const struct halfdiff angles = halfdiff_from_dirs(wi, wo);
 	const double degrees = 180 / M_PI, offset = m->bins == BINS_CENTRE ? 0.5 : 0;
-	const struct bracket h = bracket_clamped(sqrt(90 * degrees * angles.theta_h) - offset, SAMPLES_THETA_H);
-	const struct bracket d = bracket_clamped(degrees * angles.theta_d - offset, SAMPLES_THETA_D);
+	const struct bracket h = bracket_clamped(sqrt(90 * degrees * angles.theta_h) - offset, MERL_THETA_H);
+	const struct bracket d = bracket_clamped(degrees * angles.theta_d - offset, MERL_THETA_D);
 	const struct bracket phi = bracket_around(degrees * angles.phi_d - offset, m->n_phi_d);
 	for (int corner = 0; corner < 8; corner++) {
 		const double weight = (corner & 1 ? h.share : 1 - h.share) * (corner & 2 ? d.share : 1 - d.share) *
 				      (corner & 4 ? phi.share : 1 - phi.share);
 		const float *entry = entry_at(m, corner & 1 ? h.high : h.low, corner & 2 ? d.high : d.low,
 					      corner & 4 ? phi.high : phi.low);
-		for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		for (int c = 0; c < MERL_CHANNELS; c++)
 			f[c] += weight * (double)entry[c];
 	}
 }

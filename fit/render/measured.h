@@ -3,18 +3,18 @@
 #ifndef MEASURED_H
 #define MEASURED_H
 
-#include "data_readers/samples.h"
+#include "data_readers/measurement.h"
 
 /* struct measured - a copy of a table without gaps. */
 struct measured {
 	enum bins bins;
 	int n_phi_d;
-	float *value; /* 1/sr; three channels of an entry beside each other, entries ordered as in struct samples */
+	float *value; /* 1/sr; three channels of an entry beside each other, entries ordered as in struct measurement */
 };
 
 /* measured_init - takes the values of `samples`. A masked entry gets the value of the valid one at the next smaller
  * theta_d, else at the next smaller theta_h, same phi_d; where there is none either, 0. STATUS_NO_MEMORY. */
-MUST_CHECK enum status measured_init(struct measured *measured, const struct samples *samples, enum bins bins);
+MUST_CHECK enum status measured_init(struct measured *measured, const struct measurement *measurement, enum bins bins);
 void measured_free(struct measured *measured);
 
 /* measured_f - the BRDF in three channels, 1/sr: linear between the entries in the table's own coordinates, in which

@@ -23,8 +23,8 @@ static const struct cook_torrance *best_of(const struct pictures_model *model, i
 	return model[best].model;
 }
 
-enum status pictures_render(const struct samples *samples, enum bins bins, const struct pictures_model *model, int n,
-			    enum sampling sampling, const struct environment *environment,
+enum status pictures_render(const struct measurement *measurement, enum bins bins, const struct pictures_model *model,
+			    int n, enum sampling sampling, const struct environment *environment,
 			    const struct sphere_options *options, struct pictures *p)
 {
 	struct measured measured;
@@ -32,7 +32,7 @@ enum status pictures_render(const struct samples *samples, enum bins bins, const
 		.n = n, .sphere = calloc((size_t)n, sizeof *p->sphere), .error = calloc((size_t)n, sizeof *p->error)};
 	enum status status = p->sphere && p->error ? STATUS_OK : STATUS_NO_MEMORY;
 	if (!status)
-		status = measured_init(&measured, samples, bins);
+		status = measured_init(&measured, measurement, bins);
 	if (!status) {
 		status = render(best_of(model, n), &measured, sampling, environment, options, &p->measured);
 		measured_free(&measured);

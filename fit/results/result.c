@@ -51,22 +51,23 @@ const struct csv_column result_columns[RESULT_COLUMNS] = {
 	[RESULT_ENERGY] = {"energy", false},
 };
 
-void result_input(char text[RESULT_INPUT_SIZE], const struct samples *samples)
+void result_input(char text[RESULT_INPUT_SIZE], const struct measurement *measurement)
 {
-	snprintf(text, RESULT_INPUT_SIZE, "%" PRIu64 ":%016" PRIx64, samples->file_size, samples->file_hash);
+	snprintf(text, RESULT_INPUT_SIZE, "%" PRIu64 ":%016" PRIx64, measurement->file_size, measurement->file_hash);
 }
 
-bool result_is_input(const char *input, const struct samples *samples)
+bool result_is_input(const char *input, const struct measurement *measurement)
 {
 	char text[RESULT_INPUT_SIZE];
-	result_input(text, samples);
+	result_input(text, measurement);
 	return !*input || !strcmp(input, text);
 }
 
-enum status result_check_input(const char *input, const struct samples *samples, const char *path, struct error *error)
+enum status result_check_input(const char *input, const struct measurement *measurement, const char *path,
+			       struct error *error)
 {
 	char name[TEXT_QUOTE_SIZE];
-	if (result_is_input(input, samples))
+	if (result_is_input(input, measurement))
 		return STATUS_OK;
 	text_quote(path, name, sizeof name);
 	return error_set(error, STATUS_FORMAT, "cannot show '%s': it is not the file any more that was fitted", name);
@@ -146,11 +147,11 @@ static void add_param(char params[PARAMS_SIZE], const char *name, double value)
 static void set_nodes(const struct fit_options *options, const struct ndf *ndf, char params[PARAMS_SIZE])
 {
 	for (int i = 0; i < FREE_FORM_VALUES; i++) {
-		const struct halfdiff_trig h = bins_trig(options->bins, i < SAMPLES_THETA_H ? i : 0, 0, 0);
+		const struct halfdiff_trig h = bins_trig(options->bins, i < MERL_THETA_H ? i : 0, 0, 0);
 		const struct vec3 horizon = {1, 0, 1e-300};
 		char name[16];
 		snprintf(name, sizeof name, "D%d", i);
-		add_param(params, name, ndf_D(ndf, i < SAMPLES_THETA_H ? (struct vec3){h.sin_h, 0, h.cos_h} : horizon));
+		add_param(params, name, ndf_D(ndf, i < MERL_THETA_H ? (struct vec3){h.sin_h, 0, h.cos_h} : horizon));
 	}
 }
 

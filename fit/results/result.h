@@ -61,11 +61,11 @@ struct result_source {
 
 enum { RESULT_INPUT_SIZE = 40 };
 /* result_input - size and hash of a file's bytes: how a row says which bytes it was made from. */
-void result_input(char text[RESULT_INPUT_SIZE], const struct samples *samples);
+void result_input(char text[RESULT_INPUT_SIZE], const struct measurement *measurement);
 /* result_is_input - whether these are the bytes that a row was made from; `input` is its text, "": it does not say, true. */
-bool result_is_input(const char *input, const struct samples *samples);
+bool result_is_input(const char *input, const struct measurement *measurement);
 /* result_check_input - the same for samples read from `path`; STATUS_FORMAT with a message if they are not. */
-MUST_CHECK enum status result_check_input(const char *input, const struct samples *samples, const char *path,
+MUST_CHECK enum status result_check_input(const char *input, const struct measurement *measurement, const char *path,
 					  struct error *error);
 
 /* result_material - newly allocated: the name of a file without its directory and `.binary`; NULL: out of memory. */

@@ -46,7 +46,7 @@ enum status algorithm_find(const char *name, const struct algorithm **algorithm)
 }
 
 /* Coordinates of a joint search: the shape's, then kd, then ks. */
-enum { DIMS_MAX = SPACE_DIMS + 2 * SAMPLES_CHANNELS };
+enum { DIMS_MAX = SPACE_DIMS + 2 * MERL_CHANNELS };
 
 struct run {
 	const struct algorithm *algorithm;
@@ -67,7 +67,7 @@ struct run {
 /* How many coordinates kd (or ks) take. */
 static int factors(const struct fit_options *options, bool present)
 {
-	return !present ? 0 : options->gray ? 1 : SAMPLES_CHANNELS;
+	return !present ? 0 : options->gray ? 1 : MERL_CHANNELS;
 }
 
 static void set_up_space(struct run *r)
@@ -93,10 +93,10 @@ static void read_factors(const struct fit_options *o, bool specular, const doubl
 {
 	const int n = factors(o, specular ? o->specular : o->diffuse);
 
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+	for (int c = 0; c < MERL_CHANNELS; c++) {
 		const double u = n == 0 ? 0 : (*x)[n == 1 ? 0 : c];
 
-		value[c] = o->unbounded ? u / (1 - u) : u * objective_most(o, specular);
+		value[c] = o->unbounded ? u / (1 - u) : u * objective_upper_bound(o, specular);
 	}
 	*x += n;
 }
@@ -324,8 +324,8 @@ static enum status run_alone(struct run *r)
 	return status == STATUS_OK ? certify(r) : status;
 }
 
-enum status algorithm_run(const struct table *full, const struct fit_options *options, const struct ndf_class *class,
-			  struct found *found)
+enum status algorithm_run(const struct sample_set *full, const struct fit_options *options,
+			  const struct ndf_class *class, struct found *found)
 {
 	struct run r = {.algorithm = options->algorithm,
 			.options = options,

@@ -30,7 +30,7 @@ MUST_CHECK enum status algorithm_find(const char *name, const struct algorithm *
  * Returns: in *found the best of all it saw; limited unless nothing was left to search; starts are the local searches
  *          (1 for the others)
  * Errors:  STATUS_NO_MEMORY, STATUS_INTERRUPTED, STATUS_UNSUPPORTED: nlopt refused this many parameters */
-MUST_CHECK enum status algorithm_run(const struct table *full, const struct fit_options *options,
+MUST_CHECK enum status algorithm_run(const struct sample_set *full, const struct fit_options *options,
 				     const struct ndf_class *class, struct found *found);
 
 #endif

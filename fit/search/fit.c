@@ -74,10 +74,10 @@ void fit_context_free(struct fit_context *context)
 /* One material under one set of options. */
 struct job {
 	const struct fit_context *context;
-	const struct samples *samples;
+	const struct measurement *measurement;
 	const struct fit_options *options;
-	struct levels levels;
-	struct evidence *evidence; /* of the last search of each class, by its place in the table of distributions */
+	struct multiresolution levels;
+	struct scan_minima *evidence; /* of the last search of each class, by its place in the table of distributions */
 };
 
 static int place_of(const struct ndf_class *class)
@@ -112,10 +112,10 @@ static unsigned bounds_of(const struct fit_result *r, const struct fit_options *
 		if (o->fresnel == FRESNEL_CONDUCTOR && on_bound(m->k, 0, FIT_K_MAX))
 			bits |= BOUND_K;
 	}
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-		if (o->diffuse && (m->kd[c] <= 0 || m->kd[c] >= objective_most(o, false)))
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		if (o->diffuse && (m->kd[c] <= 0 || m->kd[c] >= objective_upper_bound(o, false)))
 			bits |= (unsigned)BOUND_KD_R << c;
-		if (o->specular && (m->ks[c] <= 0 || m->ks[c] >= objective_most(o, true)))
+		if (o->specular && (m->ks[c] <= 0 || m->ks[c] >= objective_upper_bound(o, true)))
 			bits |= (unsigned)BOUND_KS_R << c;
 	}
 	return bits;
@@ -134,11 +134,11 @@ static enum status result_with_ndf(const struct job *job, const struct found *fo
 	m->fresnel = o->fresnel;
 	m->n = found->shape.ior;
 	m->k = found->shape.k;
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+	for (int c = 0; c < MERL_CHANNELS; c++) {
 		m->kd[c] = found->linear.kd[c];
 		m->ks[c] = found->linear.ks[c];
 	}
-	status = metrics_compute(&job->context->geometry, job->samples, m, o->threads, &r->metrics);
+	status = metrics_compute(&job->context->geometry, job->measurement, m, o->threads, &r->metrics);
 	if (status != STATUS_OK)
 		return status;
 	r->error = r->metrics.error[o->weight];
@@ -347,7 +347,7 @@ static enum status fit_each_gamma(const struct job *job, const struct ndf_class 
 	struct fit_options options = *job->options;
 	struct job own = *job;
 	enum status status = STATUS_OK;
-	struct evidence *evidence = &job->evidence[place_of(class)], best_evidence = *evidence;
+	struct scan_minima *evidence = &job->evidence[place_of(class)], best_evidence = *evidence;
 	struct fit_result one = {0};
 	struct ndf ndf;
 	struct further sum = {.options = job->options};
@@ -412,7 +412,7 @@ static enum status fit_free_form(const struct job *job, struct nested *nested, s
 {
 	const double begin = search_clock();
 	struct nested fresh = {.done = {false}};
-	struct evidence evidence[FIT_NDFS_MAX] = {{.slice = {{{.error = 0}}}}};
+	struct scan_minima evidence[FIT_NDFS_MAX] = {{.slice = {{{.error = 0}}}}};
 	struct fit_options exact = *job->options;
 	struct job own = *job;
 	struct cook_torrance starts[5];
@@ -523,21 +523,21 @@ static enum status find_undetermined(const struct job *job, const struct ndf_cla
 	return status;
 }
 
-enum status fit_run(const struct fit_context *context, const struct samples *samples, const struct fit_options *options,
-		    struct fit_result *results, struct error *error)
+enum status fit_run(const struct fit_context *context, const struct measurement *measurement,
+		    const struct fit_options *options, struct fit_result *results, struct error *error)
 {
-	struct evidence evidence[FIT_NDFS_MAX] = {{.slice = {{{.error = 0}}}}};
-	struct job job = {.context = context, .samples = samples, .options = options, .evidence = evidence};
+	struct scan_minima evidence[FIT_NDFS_MAX] = {{.slice = {{{.error = 0}}}}};
+	struct job job = {.context = context, .measurement = measurement, .options = options, .evidence = evidence};
 	struct nested nested = {.done = {false}};
-	struct table full;
-	enum status status = table_init(&full, &context->geometry, samples, options->threads);
+	struct sample_set full;
+	enum status status = sample_set_init(&full, &context->geometry, measurement, options->threads);
 
 	if (status == STATUS_NO_DATA)
 		return error_set(error, status, "no entry to fit: expected some valid ones that are not all zero");
 	if (status == STATUS_OK && options->algorithm)
 		job.levels.table[SEARCH_LEVELS - 1] = full; /* the others need no thinned tables */
 	else if (status == STATUS_OK)
-		status = levels_init(&job.levels, &full);
+		status = multiresolution_init(&job.levels, &full);
 	if (status != STATUS_OK)
 		return error_set(error, status, "%s", status_str(status));
 	for (int n = 0; n < options->n_ndf; n++)
@@ -549,22 +549,22 @@ enum status fit_run(const struct fit_context *context, const struct samples *sam
 	}
 	for (int n = 0; n < options->n_ndf && status != STATUS_OK; n++)
 		fit_result_free(&results[n]);
-	levels_free(&job.levels);
+	multiresolution_free(&job.levels);
 	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
 }
 
-enum status fit_estimate(const struct fit_context *context, const struct samples *samples,
+enum status fit_estimate(const struct fit_context *context, const struct measurement *measurement,
 			 const struct fit_options *options, double *error)
 {
-	struct levels levels;
-	struct table full;
-	enum status status = table_init(&full, &context->geometry, samples, options->threads);
+	struct multiresolution levels;
+	struct sample_set full;
+	enum status status = sample_set_init(&full, &context->geometry, measurement, options->threads);
 	bool known = true;
 
 	*error = INFINITY;
 	if (status != STATUS_OK)
 		return status;
-	status = levels_init(&levels, &full);
+	status = multiresolution_init(&levels, &full);
 	if (status != STATUS_OK)
 		return status;
 	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++) {
@@ -576,11 +576,11 @@ enum status fit_estimate(const struct fit_context *context, const struct samples
 	}
 	if (!known)
 		*error = INFINITY;
-	levels_free(&levels);
+	multiresolution_free(&levels);
 	return status;
 }
 
-enum status fit_eval(const struct samples *samples, const struct cook_torrance *model,
+enum status fit_eval(const struct measurement *measurement, const struct cook_torrance *model,
 		     const struct fit_options *options, struct fit_metrics *metrics, struct error *error)
 {
 	struct fit_options own = *options;
@@ -588,9 +588,9 @@ enum status fit_eval(const struct samples *samples, const struct cook_torrance *
 	enum status status;
 
 	own.gaf = model->gaf;
-	status = fit_context_new(&context, samples->n_phi_d, &own);
+	status = fit_context_new(&context, measurement->n_phi_d, &own);
 	if (status == STATUS_OK)
-		status = metrics_compute(&context->geometry, samples, model, options->threads, metrics);
+		status = metrics_compute(&context->geometry, measurement, model, options->threads, metrics);
 	fit_context_free(context);
 	if (status == STATUS_NO_DATA)
 		return error_set(error, status, "no entry to compare: expected some valid ones that are not all zero");

@@ -3,7 +3,7 @@
 #ifndef FIT_H
 #define FIT_H
 
-#include "data_readers/samples.h"
+#include "data_readers/measurement.h"
 #include "src/cook_torrance.h"
 #include <stdbool.h>
 #ifdef __cplusplus
@@ -148,17 +148,17 @@ void fit_result_free(struct fit_result *result);
  * pl, the piecewise-linear NDF, is fitted to the table itself (free_form.h), from the optima of STD, GGX and Beckmann.
  * On success each result is to be freed with fit_result_free(). Wants 400 kB of stack.
  * Errors: STATUS_NO_DATA (no valid entry, all zero), STATUS_NO_MEMORY, STATUS_INTERRUPTED. */
-MUST_CHECK enum status fit_run(const struct fit_context *context, const struct samples *samples,
+MUST_CHECK enum status fit_run(const struct fit_context *context, const struct measurement *measurement,
 			       const struct fit_options *options, struct fit_result *results, struct error *error);
 
 /* fit_estimate - about the least error that any of the options' NDFs will end with, from samples of the table: within
  * 0.3 % as a rule, for a fraction of fit_run()'s work. INFINITY where one of them has no shape to search.
  * Errors: as fit_run() */
-MUST_CHECK enum status fit_estimate(const struct fit_context *context, const struct samples *samples,
+MUST_CHECK enum status fit_estimate(const struct fit_context *context, const struct measurement *measurement,
 				    const struct fit_options *options, double *error);
 
 /* fit_eval - the metrics of a given model against a table, no fit. */
-MUST_CHECK enum status fit_eval(const struct samples *samples, const struct cook_torrance *model,
+MUST_CHECK enum status fit_eval(const struct measurement *measurement, const struct cook_torrance *model,
 				const struct fit_options *options, struct fit_metrics *metrics, struct error *error);
 
 #endif

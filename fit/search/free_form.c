@@ -16,16 +16,16 @@ enum status free_form_pwl(enum bins bins, const double D[FREE_FORM_VALUES], stru
 		theta[n] = 0;
 		value[n++] = D[0];
 	}
-	for (int i = 0; i < SAMPLES_THETA_H; i++) {
+	for (int i = 0; i < MERL_THETA_H; i++) {
 		theta[n] = bins_angles(bins, i, 0, 0).theta_h;
 		value[n++] = D[i];
 	}
 	theta[n] = M_PI / 2 - 2 * rim;
-	value[n++] = D[SAMPLES_THETA_H - 1];
+	value[n++] = D[MERL_THETA_H - 1];
 	theta[n] = M_PI / 2 - rim;
-	value[n++] = D[SAMPLES_THETA_H];
+	value[n++] = D[MERL_THETA_H];
 	theta[n] = M_PI / 2;
-	value[n++] = D[SAMPLES_THETA_H];
+	value[n++] = D[MERL_THETA_H];
 	return pwl_init(pwl, n, theta, value, NULL);
 }
 
@@ -38,7 +38,7 @@ struct state {
 
 struct run {
 	const struct fit_options *options;
-	const struct table *sample; /* where node values are proposed */
+	const struct sample_set *sample; /* where node values are proposed */
 	struct objective full, thin;
 	struct wish *wishes;
 	long evaluations;
@@ -47,7 +47,7 @@ struct run {
 /* What the normalisation has made of the values. */
 static double scale_of(const double before[], const double after[])
 {
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
+	for (int i = 0; i < MERL_THETA_H; i++)
 		if (before[i] > 0)
 			return after[i] / before[i];
 	return 1;
@@ -75,7 +75,7 @@ static enum status evaluate(struct run *r, struct state *s, double tolerance, bo
 
 	if (status != STATUS_OK)
 		return status;
-	s->D[SAMPLES_THETA_H] *= scale_of(s->D, r->full.D);
+	s->D[MERL_THETA_H] *= scale_of(s->D, r->full.D);
 	memcpy(s->D, r->full.D, sizeof r->full.D);
 	objective_eval(&r->full, &s->shape, tolerance, certify, &s->linear);
 	r->evaluations++;
@@ -85,12 +85,12 @@ static enum status evaluate(struct run *r, struct state *s, double tolerance, bo
 /* Adds what slot n says about its row, whose wishes begin at `wish`. Returns how many it added. */
 static int slot_wishes(const struct run *r, const struct state *s, size_t n, struct wish *wish)
 {
-	const struct table *t = r->sample;
+	const struct sample_set *t = r->sample;
 	const int block = (int)(n / KERNEL_BLOCK), members = block < t->n_pair_blocks ? 2 : 1;
 	int count = 0;
 
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-		const float *value = table_value(t, block, c) + n % KERNEL_BLOCK;
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		const float *value = sample_set_value(t, block, c) + n % KERNEL_BLOCK;
 		const float per_D = (float)s->linear.ks[c] * r->thin.s[n],
 			    below = (float)(s->linear.kd[c] / M_PI) * t->w[n];
 
@@ -101,35 +101,35 @@ static int slot_wishes(const struct run *r, const struct state *s, size_t n, str
 }
 
 /* New node values: of each row, the median that its entries wish for under the present kd, ks, n and G. */
-static enum status propose(struct run *r, const struct state *s, double D[SAMPLES_THETA_H])
+static enum status propose(struct run *r, const struct state *s, double D[MERL_THETA_H])
 {
-	const struct table *t = r->sample;
+	const struct sample_set *t = r->sample;
 	const size_t slots = (size_t)t->n_blocks * KERNEL_BLOCK;
-	size_t begin[SAMPLES_THETA_H + 1] = {0}, end[SAMPLES_THETA_H];
-	double unit[SAMPLES_THETA_H];
+	size_t begin[MERL_THETA_H + 1] = {0}, end[MERL_THETA_H];
+	double unit[MERL_THETA_H];
 	enum status status = use(r, &r->thin, s);
 
 	if (status != STATUS_OK)
 		return status;
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
+	for (int i = 0; i < MERL_THETA_H; i++)
 		unit[i] = 1;
 	memcpy(r->thin.D, unit, sizeof unit);
 	status = objective_lobe(&r->thin, &s->shape);
 	if (status != STATUS_OK)
 		return status;
 	for (size_t n = 0; n < slots; n++)
-		begin[t->row[n] / SAMPLES_THETA_D + 1] += 2 * SAMPLES_CHANNELS;
-	for (int i = 0; i < SAMPLES_THETA_H; i++) {
+		begin[t->row[n] / MERL_THETA_D + 1] += 2 * MERL_CHANNELS;
+	for (int i = 0; i < MERL_THETA_H; i++) {
 		begin[i + 1] += begin[i];
 		end[i] = begin[i];
 	}
 	for (size_t n = 0; n < slots; n++) {
-		const int i = t->row[n] / SAMPLES_THETA_D;
+		const int i = t->row[n] / MERL_THETA_D;
 
 		end[i] += (size_t)slot_wishes(r, s, n, r->wishes + end[i]);
 	}
 #pragma omp parallel for num_threads(r->options->threads) schedule(dynamic) if (r->options->threads > 1)
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
+	for (int i = 0; i < MERL_THETA_H; i++)
 		D[i] = weighted_median(r->wishes + begin[i], end[i] - begin[i], s->D[i]);
 	return STATUS_OK;
 }
@@ -170,14 +170,14 @@ static enum status move_rows(struct run *r, struct state *s, const double D[], i
 /* A step of all node values; where all at once is too much, of a third of them after the other. */
 static enum status step_nodes(struct run *r, struct state *s)
 {
-	enum { THIRD = SAMPLES_THETA_H / 3 };
-	double D[SAMPLES_THETA_H];
+	enum { THIRD = MERL_THETA_H / 3 };
+	double D[MERL_THETA_H];
 	bool moved = false;
 	enum status status = propose(r, s, D);
 
 	if (status == STATUS_OK)
-		status = move_rows(r, s, D, 0, SAMPLES_THETA_H, &moved);
-	for (int from = 0; from < SAMPLES_THETA_H && !moved && status == STATUS_OK; from += THIRD) {
+		status = move_rows(r, s, D, 0, MERL_THETA_H, &moved);
+	for (int from = 0; from < MERL_THETA_H && !moved && status == STATUS_OK; from += THIRD) {
 		bool ignored = false;
 
 		status = move_rows(r, s, D, from, from + THIRD, &ignored);
@@ -198,7 +198,7 @@ static bool move_ior(struct state *s, double step)
 
 static bool move_rim(struct state *s, double step)
 {
-	s->D[SAMPLES_THETA_H] *= exp(10 * step);
+	s->D[MERL_THETA_H] *= exp(10 * step);
 	return true;
 }
 
@@ -252,7 +252,7 @@ static double lambda_with_rim(const struct run *r, struct state *s, double rim)
 	struct pwl pwl;
 	double lambda;
 
-	s->D[SAMPLES_THETA_H] = rim;
+	s->D[MERL_THETA_H] = rim;
 	if (free_form_pwl(r->options->bins, s->D, &pwl) != STATUS_OK)
 		return NAN;
 	lambda = pwl_lambda(&pwl, (struct vec3){M_SQRT1_2, 0, M_SQRT1_2});
@@ -266,13 +266,13 @@ static struct state state_of(const struct run *r, const struct cook_torrance *mo
 	const struct geometry *g = r->sample->geometry;
 	struct state s = {.shape = {.ior = model->n, .k = model->k}};
 
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
+	for (int i = 0; i < MERL_THETA_H; i++)
 		s.D[i] = ndf_D(&model->ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
 	const double some = 1e5, without = lambda_with_rim(r, &s, 0), with = lambda_with_rim(r, &s, some);
 	const double want = ndf_lambda(&model->ndf, (struct vec3){M_SQRT1_2, 0, M_SQRT1_2});
 	const double rim = some * (want - without) / (with - without);
 
-	s.D[SAMPLES_THETA_H] = rim > 1 ? rim : 1;
+	s.D[MERL_THETA_H] = rim > 1 ? rim : 1;
 	return s;
 }
 
@@ -303,12 +303,12 @@ static enum status run_all(struct run *r, const struct cook_torrance starts[], i
 	return status;
 }
 
-enum status free_form_run(const struct levels *levels, const struct fit_options *options,
+enum status free_form_run(const struct multiresolution *levels, const struct fit_options *options,
 			  const struct cook_torrance starts[], int n_starts, struct found *found, struct pwl *pwl)
 {
 	struct run r = {.options = options, .sample = &levels->table[SEARCH_LEVELS - 2]};
-	const struct table *full = &levels->table[SEARCH_LEVELS - 1];
-	const size_t wishes = (size_t)r.sample->n_blocks * KERNEL_BLOCK * 2 * SAMPLES_CHANNELS;
+	const struct sample_set *full = &levels->table[SEARCH_LEVELS - 1];
+	const size_t wishes = (size_t)r.sample->n_blocks * KERNEL_BLOCK * 2 * MERL_CHANNELS;
 	const struct ndf_class *class = ndf_find("pl");
 	enum status status = objective_init(&r.full, full, options, class, 1, MASKING_FINE);
 	struct state best = {0};

@@ -12,16 +12,16 @@
 #include "fit/search/search.h"
 #include "src/pwl.h"
 
-enum { FREE_FORM_VALUES = SAMPLES_THETA_H + 1, FREE_FORM_NODES = SAMPLES_THETA_H + 4 };
+enum { FREE_FORM_VALUES = MERL_THETA_H + 1, FREE_FORM_NODES = MERL_THETA_H + 4 };
 
-/* free_form_pwl - the distribution with D[i] at the table's rows and D[SAMPLES_THETA_H] within 1e-6 radians of the
+/* free_form_pwl - the distribution with D[i] at the table's rows and D[MERL_THETA_H] within 1e-6 radians of the
  * horizon. Status as pwl_init(). */
 MUST_CHECK enum status free_form_pwl(enum bins bins, const double D[FREE_FORM_VALUES], struct pwl *pwl);
 
 /* free_form_run - from each of the n_starts models, of which the best is followed to its end.
  * Returns: *found (shape.ior, shape.k and linear are the model's) and *pwl, which the caller frees.
  * Errors:  STATUS_NO_MEMORY, STATUS_INTERRUPTED */
-MUST_CHECK enum status free_form_run(const struct levels *levels, const struct fit_options *options,
+MUST_CHECK enum status free_form_run(const struct multiresolution *levels, const struct fit_options *options,
 				     const struct cook_torrance starts[], int n_starts, struct found *found,
 				     struct pwl *pwl);
 

@@ -8,30 +8,30 @@
 #include <time.h>
 
 /* Slots of the thinned tables. Systematic samples this small estimate E to about 0.1, 0.03 and 0.003 %. */
-static const int level_slots[SEARCH_LEVELS - 1] = {3000, 12000, 60000};
+static const int level_samples[SEARCH_LEVELS - 1] = {3000, 12000, 60000};
 
-enum status levels_init(struct levels *levels, struct table *full)
+enum status multiresolution_init(struct multiresolution *levels, struct sample_set *full)
 {
 	enum status status = STATUS_OK;
 
-	*levels = (struct levels){0};
+	*levels = (struct multiresolution){0};
 	levels->table[SEARCH_LEVELS - 1] = *full;
-	*full = (struct table){0};
+	*full = (struct sample_set){0};
 	for (int l = SEARCH_LEVELS - 2; l >= 0 && status == STATUS_OK; l--)
-		status = table_thin(&levels->table[l], &levels->table[l + 1], level_slots[l]);
+		status = sample_set_thin(&levels->table[l], &levels->table[l + 1], level_samples[l]);
 	if (status != STATUS_OK)
-		levels_free(levels);
+		multiresolution_free(levels);
 	return status;
 }
 
-void levels_free(struct levels *levels)
+void multiresolution_free(struct multiresolution *levels)
 {
 	for (int l = 0; l < SEARCH_LEVELS; l++)
-		table_free(&levels->table[l]);
+		sample_set_free(&levels->table[l]);
 }
 
 struct search {
-	const struct levels *levels;
+	const struct multiresolution *levels;
 	const struct fit_options *options;
 	const struct ndf_class *class;
 	struct space space;
@@ -396,7 +396,7 @@ static int agreeing(const struct search *s, const struct space_point place[], in
 }
 
 /* The best place of each slice of the grid. */
-static void note_slices(const struct search *s, const struct space_point *grid, struct evidence *evidence)
+static void note_slices(const struct search *s, const struct space_point *grid, struct scan_minima *evidence)
 {
 	const long total = grid_size(s, 0);
 
@@ -416,7 +416,7 @@ static void note_slices(const struct search *s, const struct space_point *grid, 
 }
 
 /* The places to start from: the valleys of a scan. Returns how many, 0 on failure. */
-static int first_places(struct search *s, struct space_point place[], struct evidence *evidence, enum status *status)
+static int first_places(struct search *s, struct space_point place[], struct scan_minima *evidence, enum status *status)
 {
 	struct space_point *grid = calloc((size_t)grid_size(s, 0), sizeof *grid);
 	int count = 0;
@@ -456,7 +456,7 @@ static int descend(struct search *s, struct space_point place[], int count, stru
 	return *status == STATUS_OK ? thin_out(s, place, count, &stages[SEARCH_LEVELS - 1]) : 0;
 }
 
-static struct search new_search(const struct levels *levels, const struct fit_options *options,
+static struct search new_search(const struct multiresolution *levels, const struct fit_options *options,
 				const struct ndf_class *class)
 {
 	struct search s = {.levels = levels,
@@ -469,8 +469,8 @@ static struct search new_search(const struct levels *levels, const struct fit_op
 	return s;
 }
 
-enum status search_run(const struct levels *levels, const struct fit_options *options, const struct ndf_class *class,
-		       struct found *found)
+enum status search_run(const struct multiresolution *levels, const struct fit_options *options,
+		       const struct ndf_class *class, struct found *found)
 {
 	struct search s = new_search(levels, options, class);
 	struct space_point *place = calloc(MOST_STARTS + (size_t)options->starts + 1, sizeof *place);
@@ -490,7 +490,7 @@ enum status search_run(const struct levels *levels, const struct fit_options *op
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }
 
-enum status search_estimate(const struct levels *levels, const struct fit_options *options,
+enum status search_estimate(const struct multiresolution *levels, const struct fit_options *options,
 			    const struct ndf_class *class, double *error)
 {
 	struct search s = new_search(levels, options, class);
@@ -510,9 +510,9 @@ enum status search_estimate(const struct levels *levels, const struct fit_option
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }
 
-enum status search_from(const struct levels *levels, const struct fit_options *options, const struct ndf_class *class,
-			const struct shape given[], int n_given, const struct shape *known, double error,
-			struct found *found)
+enum status search_from(const struct multiresolution *levels, const struct fit_options *options,
+			const struct ndf_class *class, const struct shape given[], int n_given,
+			const struct shape *known, double error, struct found *found)
 {
 	struct fit_options own = *options;
 	struct search s;

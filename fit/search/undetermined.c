@@ -11,10 +11,10 @@ struct pin {
 };
 
 struct inquiry {
-	const struct levels *levels;
+	const struct multiresolution *levels;
 	const struct fit_options *options;
 	const struct ndf_class *class;
-	const struct evidence *evidence;
+	const struct scan_minima *evidence;
 	struct space space;
 	struct shape best;
 	double error;   /* E of *best on the full table, */
@@ -22,7 +22,7 @@ struct inquiry {
 	double lambert; /* there too: E without a specular term */
 	/* And what each channel's part of E rises by, at the least of the shapes that come into question, with kd at its
 	 * upper end, and without specular term. */
-	double rise[2][SAMPLES_CHANNELS], rise_of_best[2][SAMPLES_CHANNELS]; /* and that at *best */
+	double rise[2][MERL_CHANNELS], rise_of_best[2][MERL_CHANNELS]; /* and that at *best */
 	_Atomic long evaluations;
 };
 
@@ -123,7 +123,7 @@ enum { STARTS = 2 };
 static int first_places(struct inquiry *q, struct objective *o, const struct space *space, const struct pin *pin,
 			struct space_point start[STARTS])
 {
-	const struct evidence *e = q->evidence;
+	const struct scan_minima *e = q->evidence;
 	int n = 0;
 
 	offer(q, o, space, q->best, start, &n, STARTS);
@@ -269,7 +269,8 @@ static enum status reaches_both_ends(struct inquiry *q, int channel, bool specul
 
 	*reached = status == STATUS_OK;
 	for (int end = 0; end < 2 && *reached; end++) {
-		objective_pin(&o, channel, specular, (int)specular == end ? objective_most(q->options, specular) : 0);
+		objective_pin(&o, channel, specular,
+			      (int)specular == end ? objective_upper_bound(q->options, specular) : 0);
 		*reached = objective_eval(&o, &q->best, 1e-7, false, &linear) <= limit_of(SEARCH_LEVELS - 1, q->error);
 		q->evaluations++;
 	}
@@ -284,7 +285,7 @@ static enum status factor(struct inquiry *q, int channel, bool specular, bool *u
 	enum { SHARES = 8 };
 	static const double share[2][SHARES] = {{1, 0, 0.6, 0.3, 0.1, 1e-2, 1e-3, 1e-4},
 						{0, 1, 0.6, 0.3, 0.1, 1e-2, 1e-3, 1e-4}};
-	const double most = objective_most(q->options, specular);
+	const double most = objective_upper_bound(q->options, specular);
 	double value[SHARES];
 
 	*undetermined = false;
@@ -329,11 +330,11 @@ static void note_rise(struct inquiry *q, struct objective *o, const struct shape
 
 	objective_unpin(o);
 	objective_eval(o, shape, 1e-4, false, &free);
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		objective_pin(o, c, false, objective_most(q->options, false));
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		objective_pin(o, c, false, objective_upper_bound(q->options, false));
 	objective_eval(o, shape, 1e-4, false, &white);
 	q->evaluations += 2;
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+	for (int c = 0; c < MERL_CHANNELS; c++) {
 		q->rise[0][c] = fmin(q->rise[0][c], above + white.channel[c] - free.channel[c]);
 		q->rise[1][c] = fmin(q->rise[1][c], above + lambert->channel[c] - free.channel[c]);
 	}
@@ -351,7 +352,7 @@ static enum status look_at_coarse(struct inquiry *q)
 	if (status != STATUS_OK)
 		return status;
 	q->coarse = objective_eval(&o, &q->best, 1e-5, false, &linear);
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
+	for (int c = 0; c < MERL_CHANNELS; c++) {
 		objective_pin(&o, c, true, 0);
 		q->rise[0][c] = q->rise[1][c] = INFINITY;
 	}
@@ -380,7 +381,7 @@ static enum status can_do_without_lobe(struct inquiry *q, bool *can)
 
 	if (status != STATUS_OK)
 		return status;
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+	for (int c = 0; c < MERL_CHANNELS; c++)
 		objective_pin(&o, c, true, 0);
 	*can = objective_eval(&o, &q->best, 1e-7, false, &linear) <= limit_of(SEARCH_LEVELS - 1, q->error);
 	objective_free(&o);
@@ -426,9 +427,10 @@ static enum status find_of_table(struct inquiry *q, unsigned *undetermined)
 	return status;
 }
 
-enum status undetermined_find(const struct levels *levels, const struct fit_options *options,
-			      const struct ndf_class *class, const struct evidence *evidence, const struct shape *best,
-			      double error, unsigned determined, unsigned *undetermined, long *evaluations)
+enum status undetermined_find(const struct multiresolution *levels, const struct fit_options *options,
+			      const struct ndf_class *class, const struct scan_minima *evidence,
+			      const struct shape *best, double error, unsigned determined, unsigned *undetermined,
+			      long *evaluations)
 {
 	struct inquiry q = {.levels = levels, .options = options, .class = class, .evidence = evidence, .best = *best};
 	bool any_shape = false;
@@ -442,7 +444,7 @@ enum status undetermined_find(const struct levels *levels, const struct fit_opti
 
 	if (status == STATUS_OK && options->specular && q.lambert <= limit_of(0, q.coarse))
 		status = can_do_without_lobe(&q, &any_shape);
-	const int n_questions = status == STATUS_OK ? q.space.dims + 2 * SAMPLES_CHANNELS : 0;
+	const int n_questions = status == STATUS_OK ? q.space.dims + 2 * MERL_CHANNELS : 0;
 
 #pragma omp parallel for num_threads(options->threads) schedule(dynamic) reduction(| : all) if (options->threads > 1)
 	for (int n = 0; n < n_questions; n++) {

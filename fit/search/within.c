@@ -116,7 +116,7 @@ static void drop_inside(const struct fit_options *options, struct variants *list
 
 struct selection {
 	const struct fit_context *context;
-	const struct samples *samples;
+	const struct measurement *measurement;
 	const struct fit_options *options;
 	double limit;
 	struct fit_options *chosen;
@@ -129,7 +129,7 @@ static enum status try_variant(struct selection *s, int i, struct error *error)
 	const struct variant v = s->list.v[i];
 	const struct fit_options o = variant_options(s->options, v);
 	struct fit_result result;
-	const enum status status = fit_run(s->context, s->samples, &o, &result, error);
+	const enum status status = fit_run(s->context, s->measurement, &o, &result, error);
 	if (status)
 		return status;
 	if (result.error <= s->limit) {
@@ -186,7 +186,7 @@ static int take_whole(struct selection *s, const struct fit_result *whole, doubl
 static enum status try_lambert(struct selection *s, double percent, bool *chosen, struct error *error)
 {
 	double best;
-	enum status status = fit_estimate(s->context, s->samples, s->options, &best);
+	enum status status = fit_estimate(s->context, s->measurement, s->options, &best);
 	*chosen = false;
 	if (status)
 		return error_set(error, status, "%s", status_str(status));
@@ -198,7 +198,7 @@ static enum status try_lambert(struct selection *s, double percent, bool *chosen
 		if (v.terms & TERM_SPECULAR)
 			continue;
 		const struct fit_options o = variant_options(s->options, v);
-		status = fit_run(s->context, s->samples, &o, s->result, error);
+		status = fit_run(s->context, s->measurement, &o, s->result, error);
 		*chosen = !status && s->result->error <= s->limit;
 		if (*chosen)
 			*s->chosen = o;
@@ -206,13 +206,13 @@ static enum status try_lambert(struct selection *s, double percent, bool *chosen
 	return status;
 }
 
-enum status within_run(const struct fit_context *context, const struct samples *samples,
+enum status within_run(const struct fit_context *context, const struct measurement *measurement,
 		       const struct fit_options *options, double percent, struct fit_options *chosen,
 		       struct fit_result *result, struct error *error)
 {
 	struct fit_result whole[FIT_NDFS_MAX];
 	struct selection s = {.context = context,
-			      .samples = samples,
+			      .measurement = measurement,
 			      .options = options,
 			      .chosen = chosen,
 			      .result = result,
@@ -221,7 +221,7 @@ enum status within_run(const struct fit_context *context, const struct samples *
 	enum status status = options->specular ? try_lambert(&s, percent, &lambert, error) : STATUS_OK;
 	if (status || lambert)
 		return status;
-	status = fit_run(context, samples, options, whole, error);
+	status = fit_run(context, measurement, options, whole, error);
 	if (status)
 		return status;
 	const int richest = take_whole(&s, whole, percent);

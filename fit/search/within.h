@@ -10,7 +10,7 @@
  * percent/100) times the lowest error of the whole model. Of variants with as many parameters, one that keeps the
  * options' own terms. Variants that lie inside one that failed are not fitted: they cannot do better. *chosen receives
  * the options of the result: one NDF. Errors as of fit_run(). */
-MUST_CHECK enum status within_run(const struct fit_context *context, const struct samples *samples,
+MUST_CHECK enum status within_run(const struct fit_context *context, const struct measurement *measurement,
 				  const struct fit_options *options, double percent, struct fit_options *chosen,
 				  struct fit_result *result, struct error *error);
 

@@ -87,20 +87,20 @@ static void drop_known(const struct batch *batch, const struct result_source *so
 	fit->n_ndf = kept;
 }
 
-static enum status fit_samples(struct run *run, struct batch_file *file, const struct samples *samples,
+static enum status fit_samples(struct run *run, struct batch_file *file, const struct measurement *measurement,
 			       struct fit_options *fit)
 {
 	const struct options *options = run->batch->options;
 	const struct result_source source = batch_source(run->batch, file);
 	const struct fit_context *context;
 	struct fit_result result[FIT_NDFS_MAX];
-	enum status status = get_context(run, samples->n_phi_d, &context);
+	enum status status = get_context(run, measurement->n_phi_d, &context);
 	if (status)
 		return error_set(&file->error, status, "%s", status_str(status));
 	if (!isnan(options->within))
-		status = within_run(context, samples, fit, options->within, fit, result, &file->error);
+		status = within_run(context, measurement, fit, options->within, fit, result, &file->error);
 	else
-		status = fit_run(context, samples, fit, result, &file->error);
+		status = fit_run(context, measurement, fit, result, &file->error);
 	if (status)
 		return status;
 	for (int i = 0; i < fit->n_ndf; i++) {
@@ -115,22 +115,22 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 static enum status process(struct run *run, struct batch_file *file)
 {
 	struct fit_options fit = run->batch->options->fit;
-	struct samples samples;
+	struct measurement measurement;
 	fit.threads = run->threads_per_fit;
 	if (run->batch->options->trace) {
 		fit.trace = trace_note;
 		fit.trace_data = &file->trace;
 	}
-	enum status status = merl_read(file->path, fit.threads, &samples, &file->error);
+	enum status status = merl_read(file->path, fit.threads, &measurement, &file->error);
 	file->unread = status == STATUS_IO || status == STATUS_NO_MEMORY;
 	if (!status) {
-		result_input(file->input, &samples);
+		result_input(file->input, &measurement);
 		const struct result_source source = batch_source(run->batch, file);
 		if (run->batch->store)
 			drop_known(run->batch, &source, &fit);
 		if (fit.n_ndf > 0)
-			status = fit_samples(run, file, &samples, &fit);
-		samples_free(&samples);
+			status = fit_samples(run, file, &measurement, &fit);
+		measurement_free(&measurement);
 		if (status && status != STATUS_INTERRUPTED) {
 			char name[TEXT_QUOTE_SIZE];
 			const struct error why = file->error;

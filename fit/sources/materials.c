@@ -231,16 +231,16 @@ static enum status read_models(const struct material *material, int threads, str
 	return STATUS_OK;
 }
 
-static enum status read_samples(const struct material *material, int threads, struct samples *samples,
+static enum status read_samples(const struct material *material, int threads, struct measurement *measurement,
 				struct error *error)
 {
 	char *const *row = material->row[0];
-	enum status status = merl_read(row[RESULT_PATH], threads, samples, error);
+	enum status status = merl_read(row[RESULT_PATH], threads, measurement, error);
 	if (status)
 		return status;
-	status = result_check_input(row[RESULT_INPUT], samples, row[RESULT_PATH], error);
+	status = result_check_input(row[RESULT_INPUT], measurement, row[RESULT_PATH], error);
 	if (status)
-		samples_free(samples);
+		measurement_free(measurement);
 	return status;
 }
 
@@ -249,7 +249,7 @@ enum status material_read(const struct material *material, int threads, struct m
 	*data = (struct material_data){.name = material->name};
 	enum status status = read_models(material, threads, data, error);
 	if (!status)
-		status = read_samples(material, threads, &data->samples, error);
+		status = read_samples(material, threads, &data->measurement, error);
 	if (status)
 		material_data_free(data);
 	return status;
@@ -259,7 +259,7 @@ void material_data_free(struct material_data *data)
 {
 	for (int i = 0; i < data->n; i++)
 		result_model_free(&data->fit[i].model, data->fit[i].pwl);
-	samples_free(&data->samples);
+	measurement_free(&data->measurement);
 	*data = (struct material_data){.n = 0};
 }
 

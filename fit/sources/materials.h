@@ -44,7 +44,7 @@ struct fitted {
 /* struct material_data - a material in memory. */
 struct material_data {
 	const char *name;
-	struct samples samples;
+	struct measurement measurement;
 	int n;
 	struct fitted fit[FIT_NDFS_MAX];
 };

@@ -213,14 +213,14 @@ static enum status fit_file(const struct options *options, const char *path, con
 	struct fit_context *context = NULL;
 	struct fit_result result[FIT_NDFS_MAX];
 	struct error why = {""};
-	enum status status = merl_read(path, options->fit.threads, &source->samples, error);
+	enum status status = merl_read(path, options->fit.threads, &source->measurement, error);
 	if (status)
 		return status;
-	status = fit_context_new(&context, source->samples.n_phi_d, &options->fit);
+	status = fit_context_new(&context, source->measurement.n_phi_d, &options->fit);
 	if (status)
 		error_set(&why, status, "%s", status_str(status));
 	else
-		status = fit_run(context, &source->samples, &options->fit, result, &why);
+		status = fit_run(context, &source->measurement, &options->fit, result, &why);
 	fit_context_free(context);
 	if (!status)
 		return add_results(options, path, material, result, source, error);
@@ -263,6 +263,6 @@ void model_source_free(struct model_source *source)
 		free(model->path);
 	}
 	free(source->model);
-	samples_free(&source->samples);
+	measurement_free(&source->measurement);
 	*source = (struct model_source){0};
 }

@@ -29,7 +29,7 @@ struct model_source {
 	struct source_model *model;
 	size_t n; /* at least one after success */
 	/* The table of the file, where it had to be read for a fit; else its planes are NULL. */
-	struct samples samples;
+	struct measurement measurement;
 };
 
 /* model_source_kind - which of the three the options ask for. */

@@ -63,18 +63,18 @@ static void models_free(struct models *m)
 
 /* Every row must be of the bytes that are there. */
 static enum status read_samples(const struct models *m, char **const *rows, const struct fit_options *options,
-				struct samples *samples, struct error *error)
+				struct measurement *measurement, struct error *error)
 {
 	const char *path = rows[0][RESULT_PATH];
 	if (!*path)
 		return cannot(rows[0], STATUS_NO_DATA, "the table has no path of its file", error);
-	enum status status = merl_read(path, options->threads, samples, error);
+	enum status status = merl_read(path, options->threads, measurement, error);
 	if (status)
 		return status;
 	for (int i = 0; i < m->n && !status; i++)
-		status = result_check_input(rows[m->row[i]][RESULT_INPUT], samples, path, error);
+		status = result_check_input(rows[m->row[i]][RESULT_INPUT], measurement, path, error);
 	if (status)
-		samples_free(samples);
+		measurement_free(measurement);
 	return status;
 }
 
@@ -83,12 +83,12 @@ static enum status render(const struct models *m, char **const *rows, const stru
 {
 	const struct sphere_options sphere = {
 		.size = SIZE, .samples = SAMPLES, .threads = options->threads, .cancel = options->cancel};
-	struct samples samples;
-	enum status status = read_samples(m, rows, options, &samples, error);
+	struct measurement measurement;
+	enum status status = read_samples(m, rows, options, &measurement, error);
 	if (status)
 		return status;
-	status = pictures_render(&samples, m->bins, m->shown, m->n, SAMPLING_VISIBLE, light, &sphere, pictures);
-	samples_free(&samples);
+	status = pictures_render(&measurement, m->bins, m->shown, m->n, SAMPLING_VISIBLE, light, &sphere, pictures);
+	measurement_free(&measurement);
 	return status ? cannot(rows[0], status, status_str(status), error) : STATUS_OK;
 }
 

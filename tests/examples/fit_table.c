@@ -14,7 +14,7 @@ static void show(void *limit, const struct fit_trace *point)
 }
 
 /* What a measurement would give: sigma 0.25, n 1.5. */
-static void measure(struct samples *table, struct cook_torrance *model)
+static void measure(struct measurement *table, struct cook_torrance *model)
 {
 	for (int at = 0; at < 90 * 90 * 180; at++) {
 		struct vec3 wi, wo;
@@ -22,7 +22,7 @@ static void measure(struct samples *table, struct cook_torrance *model)
 
 		halfdiff_to_dirs(bins_angles(BINS_NODE, at / 180 / 90, at / 180 % 90, at % 180), &wi, &wo);
 		cook_torrance_f(model, wi, wo, f);
-		for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		for (int c = 0; c < MERL_CHANNELS; c++)
 			table->value[c][at] = (float)f[c];
 	}
 }
@@ -34,14 +34,14 @@ int main(int argc, char **argv)
 	struct fit_options options = fit_options_default();
 	struct fit_context *context;
 	struct fit_result result;
-	struct samples table;
+	struct measurement table;
 
 	options.ndf[0] = ndf_find("ggx");
 	options.n_ndf = 1;
 	options.trace = show;
 	options.trace_data = &limit;
 	options.cancel = &stop;
-	if (ndf_init(&truth.ndf, options.ndf[0], 0.25, 0.25, 0) || samples_alloc(&table, 180) ||
+	if (ndf_init(&truth.ndf, options.ndf[0], 0.25, 0.25, 0) || measurement_alloc(&table, 180) ||
 	    fit_context_new(&context, table.n_phi_d, &options))
 		return 1;
 	measure(&table, &truth);
@@ -50,7 +50,7 @@ int main(int argc, char **argv)
 		printf("sigma %.4f, n %.4f\n", result.model.ndf.sigma_x, result.model.n);
 	else
 		printf("%s\n", status_str(status));
-	samples_free(&table);
+	measurement_free(&table);
 	fit_context_free(context);
 	return status == STATUS_OK ? 0 : 1;
 }

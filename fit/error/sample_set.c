@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "fit/error/table.h"
+#include "fit/error/sample_set.h"
 #include "fit/error/masking.h"
 #include <math.h>
 #include <stdlib.h>
@@ -68,33 +68,33 @@ double max_theta_cos(double max_theta)
 	return max_theta >= 90 ? 0 : cosine - 1e-12;
 }
 
-static void set_slot(struct geometry *g, int n, int i, int j, int k, struct vec3 wi, struct vec3 wo)
+static void set_sample(struct geometry *g, int n, int i, int j, int k, struct vec3 wi, struct vec3 wo)
 {
 	const double w = weight_at(g->weight, i, j, wi.z, wo.z);
 	const double G = g->gaf == GAF_V_GROOVE ? gaf_G(GAF_V_GROOVE, NULL, wi, wo) : 1;
 
 	g->q_i[n] = masking_q(wi);
 	g->q_o[n] = masking_q(wo);
-	g->geo[n] = (float)(w * G / (4 * wi.z * wo.z));
+	g->geometric_factor[n] = (float)(w * G / (4 * wi.z * wo.z));
 	g->w[n] = (float)w;
-	g->row[n] = (uint16_t)(j + SAMPLES_THETA_D * i);
+	g->row[n] = (uint16_t)(j + MERL_THETA_D * i);
 	g->k[n] = (uint16_t)k;
 }
 
 /* Fills in the slots of one theta_h from place n on, or only counts them when n < 0. */
-static int row_slots(struct geometry *g, int i, double min_cos, int n)
+static int row_samples(struct geometry *g, int i, double min_cos, int n)
 {
 	const int last_k = g->bins == BINS_NODE ? 90 : 89;
 	struct vec3 wi, wo;
 	int count = 0;
 
-	for (int j = 0; j < SAMPLES_THETA_D; j++)
+	for (int j = 0; j < MERL_THETA_D; j++)
 		for (int k = 0; k <= last_k; k++) {
 			entries_dirs(&g->entries, i, j, k, &wi, &wo);
 			if (!entry_in_range(wi, wo, min_cos))
 				continue;
 			if (n >= 0)
-				set_slot(g, n + count, i, j, k, wi, wo);
+				set_sample(g, n + count, i, j, k, wi, wo);
 			count++;
 		}
 	return count;
@@ -102,15 +102,15 @@ static int row_slots(struct geometry *g, int i, double min_cos, int n)
 
 static enum status geometry_alloc(struct geometry *g)
 {
-	const size_t n = (size_t)g->n_slots + 1; /* never nothing */
+	const size_t n = (size_t)g->n_samples + 1; /* never nothing */
 
 	g->q_i = malloc(n * sizeof *g->q_i);
 	g->q_o = malloc(n * sizeof *g->q_o);
-	g->geo = malloc(n * sizeof *g->geo);
+	g->geometric_factor = malloc(n * sizeof *g->geometric_factor);
 	g->w = malloc(n * sizeof *g->w);
 	g->row = malloc(n * sizeof *g->row);
 	g->k = malloc(n * sizeof *g->k);
-	return g->q_i && g->q_o && g->geo && g->w && g->row && g->k ? STATUS_OK : STATUS_NO_MEMORY;
+	return g->q_i && g->q_o && g->geometric_factor && g->w && g->row && g->k ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 enum status geometry_init(struct geometry *g, int n_phi_d, const struct fit_options *options)
@@ -124,19 +124,19 @@ enum status geometry_init(struct geometry *g, int n_phi_d, const struct fit_opti
 			       .q_min = MASKING_Q_MAX << MASKING_Q_BITS};
 	g->entries = entries_make(g->bins, n_phi_d);
 #pragma omp parallel for num_threads(options->threads) schedule(dynamic)
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		g->first[i + 1] = row_slots(g, i, min_cos, -1);
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
+	for (int i = 0; i < MERL_THETA_H; i++)
+		g->first[i + 1] = row_samples(g, i, min_cos, -1);
+	for (int i = 0; i < MERL_THETA_H; i++)
 		g->first[i + 1] += g->first[i];
-	g->n_slots = g->first[SAMPLES_THETA_H];
+	g->n_samples = g->first[MERL_THETA_H];
 	if (geometry_alloc(g) != STATUS_OK) {
 		geometry_free(g);
 		return STATUS_NO_MEMORY;
 	}
 #pragma omp parallel for num_threads(options->threads) schedule(dynamic)
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		row_slots(g, i, min_cos, g->first[i]);
-	for (int n = 0; n < g->n_slots; n++) {
+	for (int i = 0; i < MERL_THETA_H; i++)
+		row_samples(g, i, min_cos, g->first[i]);
+	for (int n = 0; n < g->n_samples; n++) {
 		g->q_min = g->q_i[n] < g->q_min ? g->q_i[n] : g->q_min;
 		g->q_min = g->q_o[n] < g->q_min ? g->q_o[n] : g->q_min;
 	}
@@ -147,57 +147,57 @@ void geometry_free(struct geometry *g)
 {
 	free(g->q_i);
 	free(g->q_o);
-	free(g->geo);
+	free(g->geometric_factor);
 	free(g->w);
 	free(g->row);
 	free(g->k);
 	*g = (struct geometry){0};
 }
 
-static enum status table_alloc(struct table *table, const struct geometry *geometry, int n_pairs, int n_singles)
+static enum status table_alloc(struct sample_set *table, const struct geometry *geometry, int n_pairs, int n_singles)
 {
 	const int pair_blocks = (n_pairs + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
 	const int single_blocks = (n_singles + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
 	const size_t slots = (size_t)(pair_blocks + single_blocks) * KERNEL_BLOCK;
-	const size_t values = (size_t)(2 * pair_blocks + single_blocks) * SAMPLES_CHANNELS * KERNEL_BLOCK;
+	const size_t values = (size_t)(2 * pair_blocks + single_blocks) * MERL_CHANNELS * KERNEL_BLOCK;
 
-	*table = (struct table){.geometry = geometry,
-				.n_blocks = pair_blocks + single_blocks,
-				.n_pair_blocks = pair_blocks,
-				.n_slots = n_pairs + n_singles};
+	*table = (struct sample_set){.geometry = geometry,
+				     .n_blocks = pair_blocks + single_blocks,
+				     .n_pair_blocks = pair_blocks,
+				     .n_samples = n_pairs + n_singles};
 	table->q_i = aligned_alloc(64, slots * sizeof *table->q_i);
 	table->q_o = aligned_alloc(64, slots * sizeof *table->q_o);
-	table->geo = aligned_alloc(64, slots * sizeof *table->geo);
+	table->geometric_factor = aligned_alloc(64, slots * sizeof *table->geometric_factor);
 	table->w = aligned_alloc(64, slots * sizeof *table->w);
 	table->row = aligned_alloc(64, slots * sizeof *table->row);
 	table->value = aligned_alloc(64, values * sizeof *table->value);
-	if (!table->q_i || !table->q_o || !table->geo || !table->w || !table->row || !table->value) {
-		table_free(table);
+	if (!table->q_i || !table->q_o || !table->geometric_factor || !table->w || !table->row || !table->value) {
+		sample_set_free(table);
 		return STATUS_NO_MEMORY;
 	}
 	return STATUS_OK;
 }
 
-void table_free(struct table *table)
+void sample_set_free(struct sample_set *table)
 {
 	free(table->q_i);
 	free(table->q_o);
-	free(table->geo);
+	free(table->geometric_factor);
 	free(table->w);
 	free(table->row);
 	free(table->value);
-	*table = (struct table){0};
+	*table = (struct sample_set){0};
 }
 
 /* Fills the unused tail of the pairs, or of the singles, with slots that add nothing. */
-static void pad(struct table *table, size_t from, int end_block)
+static void pad(struct sample_set *table, size_t from, int end_block)
 {
 	for (size_t n = from; n < (size_t)end_block * KERNEL_BLOCK; n++) {
 		table->q_i[n] = table->q_o[n] = MASKING_Q_MAX << MASKING_Q_BITS;
-		table->geo[n] = table->w[n] = 0;
+		table->geometric_factor[n] = table->w[n] = 0;
 		table->row[n] = 0;
-		for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-			float *value = table_value(table, (int)(n / KERNEL_BLOCK), c) + n % KERNEL_BLOCK;
+		for (int c = 0; c < MERL_CHANNELS; c++) {
+			float *value = sample_set_value(table, (int)(n / KERNEL_BLOCK), c) + n % KERNEL_BLOCK;
 
 			value[0] = 0;
 			if (n < (size_t)table->n_pair_blocks * KERNEL_BLOCK)
@@ -206,14 +206,14 @@ static void pad(struct table *table, size_t from, int end_block)
 	}
 }
 
-static void pad_all(struct table *table, size_t n_pairs, size_t n_singles)
+static void pad_all(struct sample_set *table, size_t n_pairs, size_t n_singles)
 {
 	pad(table, n_pairs, table->n_pair_blocks);
 	pad(table, (size_t)table->n_pair_blocks * KERNEL_BLOCK + n_singles, table->n_blocks);
 }
 
 /* The valid entries of slot n, as offsets into the planes. */
-static int valid_members(const struct geometry *g, const struct samples *samples, int n, size_t at[4])
+static int valid_members(const struct geometry *g, const struct measurement *measurement, int n, size_t at[4])
 {
 	int k[4], valid = 0;
 	const int count = geometry_members(g, n, k);
@@ -221,7 +221,7 @@ static int valid_members(const struct geometry *g, const struct samples *samples
 	for (int a = 0; a < count; a++) {
 		const size_t entry = (size_t)g->row[n] * (size_t)g->n_phi_d + (size_t)k[a];
 
-		if (!isnan(samples->value[0][entry]))
+		if (!isnan(measurement->value[0][entry]))
 			at[valid++] = entry;
 	}
 	return valid;
@@ -229,49 +229,49 @@ static int valid_members(const struct geometry *g, const struct samples *samples
 
 struct fill {
 	size_t pair, single; /* next free place of each sort */
-	double sum[SAMPLES_CHANNELS], sum_w;
+	double sum[MERL_CHANNELS], sum_w;
 };
 
-static void put(struct table *table, const struct samples *samples, int n, size_t to, const size_t *at, int members,
-		double sum[])
+static void put(struct sample_set *table, const struct measurement *measurement, int n, size_t to, const size_t *at,
+		int members, double sum[])
 {
 	const struct geometry *g = table->geometry;
 	const float w = g->w[n];
 
 	table->q_i[to] = g->q_i[n];
 	table->q_o[to] = g->q_o[n];
-	table->geo[to] = g->geo[n];
+	table->geometric_factor[to] = g->geometric_factor[n];
 	table->w[to] = g->w[n];
 	table->row[to] = g->row[n];
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-		float *value = table_value(table, (int)(to / KERNEL_BLOCK), c) + to % KERNEL_BLOCK;
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		float *value = sample_set_value(table, (int)(to / KERNEL_BLOCK), c) + to % KERNEL_BLOCK;
 
 		for (int a = 0; a < members; a++) {
-			value[a * KERNEL_BLOCK] = w * samples->value[c][at[a]];
+			value[a * KERNEL_BLOCK] = w * measurement->value[c][at[a]];
 			sum[c] += (double)value[a * KERNEL_BLOCK];
 		}
 	}
 }
 
-static void fill_row(struct table *table, const struct samples *samples, int i, struct fill *fill)
+static void fill_row(struct sample_set *table, const struct measurement *measurement, int i, struct fill *fill)
 {
 	const struct geometry *g = table->geometry;
 	size_t at[4];
 
 	for (int n = g->first[i]; n < g->first[i + 1]; n++) {
-		const int valid = valid_members(g, samples, n, at);
+		const int valid = valid_members(g, measurement, n, at);
 
 		fill->sum_w += valid * (double)g->w[n];
 		for (int a = 0; a + 1 < valid; a += 2)
-			put(table, samples, n, fill->pair++, at + a, 2, fill->sum);
+			put(table, measurement, n, fill->pair++, at + a, 2, fill->sum);
 		if (valid % 2)
-			put(table, samples, n, fill->single++, at + valid - 1, 1, fill->sum);
+			put(table, measurement, n, fill->single++, at + valid - 1, 1, fill->sum);
 	}
 }
 
 /* The kernel adds a few hundred floats before it goes on in double: where those could overflow, everything in units of
  * the weight becomes smaller by a power of two, which changes no error. */
-static void keep_in_range(struct table *table)
+static void keep_in_range(struct sample_set *table)
 {
 	const double total = table->sum[0] + table->sum[1] + table->sum[2];
 
@@ -279,80 +279,80 @@ static void keep_in_range(struct table *table)
 		return;
 	const double scale = exp2(-ceil(log2(total * 1e-20)));
 	const size_t slots = (size_t)table->n_blocks * KERNEL_BLOCK;
-	const size_t values =
-		(size_t)(table->n_blocks + table->n_pair_blocks) * (size_t)SAMPLES_CHANNELS * KERNEL_BLOCK;
+	const size_t values = (size_t)(table->n_blocks + table->n_pair_blocks) * (size_t)MERL_CHANNELS * KERNEL_BLOCK;
 
 	for (size_t n = 0; n < slots; n++) {
-		table->geo[n] *= (float)scale;
+		table->geometric_factor[n] *= (float)scale;
 		table->w[n] *= (float)scale;
 	}
 	for (size_t n = 0; n < values; n++)
 		table->value[n] *= (float)scale;
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
+	for (int c = 0; c < MERL_CHANNELS; c++)
 		table->sum[c] *= scale;
 	table->sum_w *= scale;
 }
 
-enum status table_init(struct table *table, const struct geometry *g, const struct samples *samples, int threads)
+enum status sample_set_init(struct sample_set *table, const struct geometry *g, const struct measurement *measurement,
+			    int threads)
 {
-	struct fill fill[SAMPLES_THETA_H + 1] = {0};
+	struct fill fill[MERL_THETA_H + 1] = {0};
 	enum status status;
 
 	/* Count first: each row then knows where its slots go, whatever thread fills it. */
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
+	for (int i = 0; i < MERL_THETA_H; i++)
 		for (int n = g->first[i]; n < g->first[i + 1]; n++) {
 			size_t at[4];
-			const int valid = valid_members(g, samples, n, at);
+			const int valid = valid_members(g, measurement, n, at);
 
 			fill[i + 1].pair += (size_t)(valid / 2);
 			fill[i + 1].single += (size_t)(valid % 2);
 		}
-	for (int i = 0; i < SAMPLES_THETA_H; i++) {
+	for (int i = 0; i < MERL_THETA_H; i++) {
 		fill[i + 1].pair += fill[i].pair;
 		fill[i + 1].single += fill[i].single;
 	}
-	const size_t n_pairs = fill[SAMPLES_THETA_H].pair, n_singles = fill[SAMPLES_THETA_H].single;
+	const size_t n_pairs = fill[MERL_THETA_H].pair, n_singles = fill[MERL_THETA_H].single;
 
 	if (n_pairs + n_singles == 0)
 		return STATUS_NO_DATA;
 	status = table_alloc(table, g, (int)n_pairs, (int)n_singles);
 	if (status != STATUS_OK)
 		return status;
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
+	for (int i = 0; i < MERL_THETA_H; i++)
 		fill[i].single += (size_t)table->n_pair_blocks * KERNEL_BLOCK;
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-	for (int i = 0; i < SAMPLES_THETA_H; i++)
-		fill_row(table, samples, i, &fill[i]);
-	for (int i = 0; i < SAMPLES_THETA_H; i++) {
+	for (int i = 0; i < MERL_THETA_H; i++)
+		fill_row(table, measurement, i, &fill[i]);
+	for (int i = 0; i < MERL_THETA_H; i++) {
 		table->sum_w += fill[i].sum_w;
-		for (int c = 0; c < SAMPLES_CHANNELS; c++)
+		for (int c = 0; c < MERL_CHANNELS; c++)
 			table->sum[c] += fill[i].sum[c];
 	}
-	table->n_entries = SAMPLES_CHANNELS * (2 * n_pairs + n_singles);
+	table->n_entries = MERL_CHANNELS * (2 * n_pairs + n_singles);
 	pad_all(table, n_pairs, n_singles);
 	if (!(table->sum[0] + table->sum[1] + table->sum[2] > 0)) {
-		table_free(table);
+		sample_set_free(table);
 		return STATUS_NO_DATA;
 	}
 	keep_in_range(table);
 	return STATUS_OK;
 }
 
-static bool is_padding(const struct table *table, size_t n)
+static bool is_padding(const struct sample_set *table, size_t n)
 {
 	return table->w[n] == 0;
 }
 
 /* What is measured in slot n, as a share of the table's sum: channels count alike. */
-static double measured_share(const struct table *table, size_t n)
+static double measured_share(const struct sample_set *table, size_t n)
 {
 	const int members = n < (size_t)table->n_pair_blocks * KERNEL_BLOCK ? 2 : 1;
 	const double total = table->sum[0] + table->sum[1] + table->sum[2];
 	double share = 0;
 
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-		const float *value = table_value(table, (int)(n / KERNEL_BLOCK), c) + n % KERNEL_BLOCK;
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		const float *value = sample_set_value(table, (int)(n / KERNEL_BLOCK), c) + n % KERNEL_BLOCK;
 
 		for (int a = 0; a < members; a++)
 			share += (double)value[a * KERNEL_BLOCK];
@@ -360,8 +360,8 @@ static double measured_share(const struct table *table, size_t n)
 	return share / total;
 }
 
-/* Scales p so that the sum of min(1, p) is n_slots, or every p is 1. */
-static void scale_to(float *p, size_t count, double n_slots)
+/* Scales p so that the sum of min(1, p) is n_samples, or every p is 1. */
+static void scale_to(float *p, size_t count, double n_samples)
 {
 	for (int round = 0; round < 20; round++) {
 		double free_sum = 0, sure = 0;
@@ -371,7 +371,7 @@ static void scale_to(float *p, size_t count, double n_slots)
 				sure++;
 			else
 				free_sum += (double)p[n];
-		const double scale = free_sum > 0 ? (n_slots - sure) / free_sum : 1;
+		const double scale = free_sum > 0 ? (n_samples - sure) / free_sum : 1;
 
 		if (scale <= 1.0001 && scale >= 0.9999)
 			break;
@@ -380,16 +380,17 @@ static void scale_to(float *p, size_t count, double n_slots)
 	}
 }
 
-static void copy_slot(struct table *to, size_t b, const struct table *from, size_t a, int members, float scale)
+static void copy_sample(struct sample_set *to, size_t b, const struct sample_set *from, size_t a, int members,
+			float scale)
 {
 	to->q_i[b] = from->q_i[a];
 	to->q_o[b] = from->q_o[a];
 	to->row[b] = from->row[a];
-	to->geo[b] = from->geo[a] * scale;
+	to->geometric_factor[b] = from->geometric_factor[a] * scale;
 	to->w[b] = from->w[a] * scale;
-	for (int c = 0; c < SAMPLES_CHANNELS; c++) {
-		const float *x = table_value(from, (int)(a / KERNEL_BLOCK), c) + a % KERNEL_BLOCK;
-		float *y = table_value(to, (int)(b / KERNEL_BLOCK), c) + b % KERNEL_BLOCK;
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		const float *x = sample_set_value(from, (int)(a / KERNEL_BLOCK), c) + a % KERNEL_BLOCK;
+		float *y = sample_set_value(to, (int)(b / KERNEL_BLOCK), c) + b % KERNEL_BLOCK;
 
 		for (int m = 0; m < members; m++)
 			y[m * KERNEL_BLOCK] = x[m * KERNEL_BLOCK] * scale;
@@ -405,11 +406,11 @@ static bool taken(const float *p, size_t n, double *running)
 	return p[n] > 0 && floor(*running) > before;
 }
 
-enum status table_thin(struct table *table, const struct table *full, int n_slots)
+enum status sample_set_thin(struct sample_set *table, const struct sample_set *full, int n_samples)
 {
 	const size_t count = (size_t)full->n_blocks * KERNEL_BLOCK,
 		     pairs_end = (size_t)full->n_pair_blocks * KERNEL_BLOCK;
-	const double even = 1.0 / full->n_slots;
+	const double even = 1.0 / full->n_samples;
 	size_t n_taken[2] = {0, 0}, to[2];
 	double running = 0.5;
 	enum status status;
@@ -418,8 +419,8 @@ enum status table_thin(struct table *table, const struct table *full, int n_slot
 	if (!p)
 		return STATUS_NO_MEMORY;
 	for (size_t n = 0; n < count; n++)
-		p[n] = is_padding(full, n) ? 0 : (float)(n_slots * (0.75 * measured_share(full, n) + 0.25 * even));
-	scale_to(p, count, fmin(n_slots, full->n_slots));
+		p[n] = is_padding(full, n) ? 0 : (float)(n_samples * (0.75 * measured_share(full, n) + 0.25 * even));
+	scale_to(p, count, fmin(n_samples, full->n_samples));
 	for (size_t n = 0; n < count; n++)
 		n_taken[n >= pairs_end] += taken(p, n, &running);
 	status = table_alloc(table, full->geometry, (int)n_taken[0], (int)n_taken[1]);
@@ -430,7 +431,7 @@ enum status table_thin(struct table *table, const struct table *full, int n_slot
 	running = 0.5;
 	for (size_t n = 0; n < count; n++)
 		if (taken(p, n, &running))
-			copy_slot(table, to[n >= pairs_end]++, full, n, n < pairs_end ? 2 : 1, 1 / p[n]);
+			copy_sample(table, to[n >= pairs_end]++, full, n, n < pairs_end ? 2 : 1, 1 / p[n]);
 	pad_all(table, n_taken[0], n_taken[1]);
 	memcpy(table->sum, full->sum, sizeof table->sum);
 	table->sum_w = full->sum_w;

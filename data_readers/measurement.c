@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "data_readers/samples.h"
+#include "data_readers/measurement.h"
 #include "src/names.h"
 #include <stdlib.h>
 #include <sys/mman.h>
@@ -25,40 +25,40 @@ enum status bins_find(const char *name, enum bins *bins)
 	return STATUS_OK;
 }
 
-enum status samples_reserve(struct samples *samples, int n_phi_d)
+enum status measurement_reserve(struct measurement *measurement, int n_phi_d)
 {
-	*samples = (struct samples){0};
+	*measurement = (struct measurement){0};
 	if (n_phi_d != 180 && n_phi_d != 360)
 		return STATUS_DOMAIN;
 
-	const size_t count = (size_t)SAMPLES_THETA_H * SAMPLES_THETA_D * (size_t)n_phi_d;
-	const size_t size = (SAMPLES_CHANNELS * count * sizeof(float) + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE;
+	const size_t count = (size_t)MERL_THETA_H * MERL_THETA_D * (size_t)n_phi_d;
+	const size_t size = (MERL_CHANNELS * count * sizeof(float) + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE;
 	float *planes = aligned_alloc(HUGE_PAGE, size);
 	if (!planes)
 		return STATUS_NO_MEMORY;
 	madvise(planes, size, MADV_HUGEPAGE); /* a wish: that it cannot be granted does no harm */
-	samples->n_phi_d = n_phi_d;
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		samples->value[c] = planes + (size_t)c * count;
+	measurement->n_phi_d = n_phi_d;
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		measurement->value[c] = planes + (size_t)c * count;
 	return STATUS_OK;
 }
 
-enum status samples_alloc(struct samples *samples, int n_phi_d)
+enum status measurement_alloc(struct measurement *measurement, int n_phi_d)
 {
-	const enum status status = samples_reserve(samples, n_phi_d);
+	const enum status status = measurement_reserve(measurement, n_phi_d);
 
 	if (status != STATUS_OK)
 		return status;
-	for (int c = 0; c < SAMPLES_CHANNELS; c++)
-		for (size_t e = 0; e < samples_count(samples); e++)
-			samples->value[c][e] = NAN;
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		for (size_t e = 0; e < measurement_count(measurement); e++)
+			measurement->value[c][e] = NAN;
 	return STATUS_OK;
 }
 
-void samples_free(struct samples *samples)
+void measurement_free(struct measurement *measurement)
 {
-	free(samples->value[0]);
-	*samples = (struct samples){0};
+	free(measurement->value[0]);
+	*measurement = (struct measurement){0};
 }
 
 /* Where entry (i, j, k) stands in degrees, all exact: the one place that knows both conventions. */

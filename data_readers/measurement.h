@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* samples - a measured isotropic BRDF as a table over (theta_h, theta_d, phi_d), whatever file it came from. */
+#ifndef MEASUREMENT_H
+#define MEASUREMENT_H
+
+#include "src/halfdiff.h"
+#include "src/status.h"
+#include <stddef.h>
+#include <stdint.h>
+
+/* Where entry (i, j, k) stands: tools of the field disagree, so it is an option, recorded in every result. */
+enum bins {
+	BINS_NODE,   /* theta_h = i^2/90 deg, theta_d = j deg, phi_d = k deg */
+	BINS_CENTRE, /* theta_h = (i + 1/2)^2/90 deg, theta_d = j + 1/2 deg, phi_d = k + 1/2 deg */
+	BINS_COUNT
+};
+
+enum { MERL_THETA_H = 90, MERL_THETA_D = 90, MERL_CHANNELS = 3 };
+
+struct measurement {
+	int n_phi_d;                 /* 180 or 360: phi_d of entry k is k (or k + 1/2) degrees either way */
+	float *value[MERL_CHANNELS]; /* 1/sr; in the order of measurement_at; NaN in all three channels = masked */
+	size_t n_negative;           /* entries masked for a negative value in some channel, all three being finite */
+	size_t n_nonfinite;          /* entries masked for NaN, Inf or a value beyond float in some channel */
+	uint64_t file_size;          /* bytes of the file read; 0 for a table that was made */
+	uint64_t file_hash;          /* XXH3, 64 bits, of all those bytes, as `xxhsum -H3` prints it */
+};
+
+/* bins_name - "node" or "centre". */
+const char *bins_name(enum bins bins);
+/* bins_find - the reverse; STATUS_DOMAIN, *bins untouched, for another name. */
+MUST_CHECK enum status bins_find(const char *name, enum bins *bins);
+
+/* measurement_alloc - a table of the given n_phi_d (180 or 360), every entry masked (NaN). Free with measurement_free. */
+MUST_CHECK enum status measurement_alloc(struct measurement *measurement, int n_phi_d);
+/* measurement_reserve - the same with unset values, for a reader that is going to set every one and can do without the pass
+ * over memory that filling them is. Both return STATUS_DOMAIN for another n_phi_d, STATUS_NO_MEMORY; *samples is then
+ * cleared. */
+MUST_CHECK enum status measurement_reserve(struct measurement *measurement, int n_phi_d);
+/* measurement_free - releases the planes and clears the struct; harmless on a zeroed one. */
+void measurement_free(struct measurement *measurement);
+
+static inline size_t measurement_count(const struct measurement *measurement)
+{
+	return (size_t)MERL_THETA_H * MERL_THETA_D * (size_t)measurement->n_phi_d;
+}
+
+/* measurement_at - which place of a plane with this n_phi_d entry (i, j, k) of theta_h, theta_d, phi_d has: the file's order. */
+static inline size_t measurement_at(int n_phi_d, int i, int j, int k)
+{
+	return (size_t)k + (size_t)n_phi_d * ((size_t)j + MERL_THETA_D * (size_t)i);
+}
+
+/* bins_angles - theta_h, theta_d, phi_d (radians) of entry (i, j, k); 0 <= i, j < 90, 0 <= k < n_phi_d. */
+struct halfdiff bins_angles(enum bins bins, int i, int j, int k);
+
+/* bins_trig - sines and cosines of theta_h, theta_d and phi_d of entry (i, j, k), to the last ulp or two:
+ * above 45 degrees taken from the complement, and exactly 0 or 1 where the angle says so. */
+struct halfdiff_trig bins_trig(enum bins bins, int i, int j, int k);
+
+#endif

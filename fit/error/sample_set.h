@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* sample_set - measured entries and their geometry, laid out for the kernel. */
+#ifndef SAMPLE_SET_H
+#define SAMPLE_SET_H
+
+#include "fit/error/entries.h"
+#include "fit/error/kernel.h"
+#include "fit/search/fit.h"
+#include <stddef.h>
+
+enum { MERL_ROWS = MERL_THETA_H * MERL_THETA_D };
+
+/* struct geometry - everything about a kind of table that no material changes: its slots, row by row.
+ * Slot n stands for the entries k of row (i, j) with the same model value: k, half - k, half + k, 2 half - k. */
+struct geometry {
+	int n_phi_d;
+	enum bins bins;
+	enum weight weight;
+	enum gaf gaf;
+	int n_samples;
+	int32_t *q_i, *q_o;          /* masking_q() of wi and wo */
+	float *geometric_factor;     /* w / (4 cos_i cos_o), times G for GAF_V_GROOVE */
+	float *w;                    /* weight of an entry */
+	uint16_t *row;               /* theta_d index + 90 theta_h index */
+	uint16_t *k;                 /* phi_d index of the first entry of the slot */
+	int first[MERL_THETA_H + 1]; /* slots of theta_h index i are first[i] .. first[i + 1] - 1 */
+	int32_t q_min;               /* smallest q of all slots */
+	struct entries entries;
+};
+
+/* geometry_init - the slots above the horizon and within max_theta, under the options' weight, bins and G. */
+MUST_CHECK enum status geometry_init(struct geometry *geometry, int n_phi_d, const struct fit_options *options);
+void geometry_free(struct geometry *geometry);
+/* geometry_members - entries k of slot n, two or four of them (equal ones once), into k[]. Returns how many. */
+int geometry_members(const struct geometry *geometry, int n, int k[4]);
+
+/* struct sample_set - the valid entries of one material, or a weighted sample of them. */
+struct sample_set {
+	const struct geometry *geometry;
+	int n_blocks, n_pair_blocks; /* blocks of pairs stand first, then blocks of singles */
+	int n_samples;               /* slots in use, padding left out */
+	int32_t *q_i, *q_o;          /* n_blocks * KERNEL_BLOCK of each */
+	float *geometric_factor, *w;
+	uint16_t *row;
+	float *value;              /* w m; per block: channel by channel, first members, then second ones */
+	double sum[MERL_CHANNELS]; /* sum of w m per channel */
+	double sum_w;              /* sum of w over the entries of one channel */
+	size_t n_entries;          /* entries of three channels */
+};
+
+/* sample_set_init - takes the valid entries out of `samples`. STATUS_NO_DATA when there is none or all are zero. */
+MUST_CHECK enum status sample_set_init(struct sample_set *table, const struct geometry *geometry,
+				       const struct measurement *measurement, int threads);
+/* sample_set_thin - a weighted sample of about n_samples slots whose sums estimate those of `full`.
+ * Slots are taken systematically with probability p, three parts by what is measured there to one part evenly, and
+ * weigh 1/p: a slot where the measurement is large, and so may be the error, is hardly ever missed. */
+MUST_CHECK enum status sample_set_thin(struct sample_set *table, const struct sample_set *full, int n_samples);
+void sample_set_free(struct sample_set *table);
+
+static inline struct kernel_samples sample_set_block(const struct sample_set *table, int block)
+{
+	const size_t at = (size_t)block * KERNEL_BLOCK;
+
+	return (struct kernel_samples){table->q_i + at, table->q_o + at, table->geometric_factor + at, table->row + at};
+}
+
+/* sample_set_value - first members of channel c in a block. */
+static inline float *sample_set_value(const struct sample_set *table, int block, int c)
+{
+	const int pairs = block < table->n_pair_blocks ? block : table->n_pair_blocks;
+	const int members = block < table->n_pair_blocks ? 2 : 1;
+
+	return table->value + (size_t)KERNEL_BLOCK * (size_t)(MERL_CHANNELS * (pairs + block) + members * c);
+}
+
+/* cell_measure - solid angle of a cell in wi and wo, the integral of 4 cos_d dw_h dw_d over all phi_h and
+ * [i, i+1) x [j, j+1) x [k, k+1): sr^2. */
+double cell_measure(int i, int j);
+/* weight_at - w of entry (i, j, .) of a table, given its cosines; wants none of them for WEIGHT_NONE. */
+double weight_at(enum weight weight, int i, int j, double cos_i, double cos_o);
+
+/* max_theta_cos - the smallest cosine that `max_theta` degrees allow; entry_in_range - whether an entry takes part. */
+double max_theta_cos(double max_theta);
+bool entry_in_range(struct vec3 wi, struct vec3 wo, double min_cos);
+
+#endif
