@@ -202,10 +202,10 @@ static void bench_fits(const struct measurement *measurement, const struct measu
 	put("fit of three NDFs", "all", 2, "one thread / two threads", one / two);
 	put("fit of three NDFs, 360 table", "all", 2, "time / 180 table",
 	    fit_time(large, &o, &evaluations, &passes) / two);
-	o.max_theta = 60;
+	o.criterion.max_theta = 60;
 	put("fit of three NDFs, max theta 60", "all", 2, "time / whole table",
 	    fit_time(measurement, &o, &evaluations, &passes) / two);
-	o.max_theta = 90;
+	o.criterion.max_theta = 90;
 	o.diffuse = false;
 	put("fit of three NDFs, no diffuse", "all", 2, "time / whole model",
 	    fit_time(measurement, &o, &evaluations, &passes) / two);

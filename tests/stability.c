@@ -835,7 +835,8 @@ static void sweep_lobe(struct objective *o, const struct geometry *g, const stru
 			struct vec3 wi, wo;
 			entries_dirs(&g->entries, i, j, k, &wi, &wo);
 			/* Smaller ones than a float's D has digits for are told from 0 only. */
-			const double f = cook_torrance_lobe(model, wi, wo) * weight_at(g->weight, i, j, wi.z, wo.z);
+			const double f =
+				cook_torrance_lobe(model, wi, wo) * weight_at(g->criterion.weight, i, j, wi.z, wo.z);
 			const bool told = o->row[slots.row[n]] > 1e-36f && f > 1e-36;
 			set_place("%s sigma %g gamma %g entry %d %d %d", ndf_name(model->ndf.class), model->ndf.sigma_x,
 				  model->ndf.gamma, i, j, k);
@@ -861,7 +862,7 @@ static void sweep_shapes(const struct geometry *g, const struct sample_set *tabl
 			for (int i = 0; i < COUNT(sigma) * COUNT(gamma); i += d == 0 ? 1 : 4) {
 				const struct shape shape = {sigma[i % COUNT(sigma)], gamma[i / COUNT(sigma)], 1.5, 0.0};
 				struct cook_torrance model = {
-					.gaf = options->gaf, .fresnel = options->fresnel, .n = 1.5};
+					.gaf = options->criterion.gaf, .fresnel = options->fresnel, .n = 1.5};
 				if (shape_ndf(&shape, o.class, LAMBDA_EXACT, &model.ndf) != STATUS_OK ||
 				    objective_lobe(&o, &shape) != STATUS_OK)
 					continue;
@@ -887,7 +888,7 @@ static void sweep_scales(const struct geometry *g, const struct fit_options *opt
 		for (size_t e = 0; e < measurement_count(measurement); e++)
 			for (int c = 0; c < MERL_CHANNELS; c++)
 				measurement->value[c][e] = scale[i];
-		set_place("all %g, weight %s", (double)scale[i], weight_name(options->weight));
+		set_place("all %g, weight %s", (double)scale[i], weight_name(options->criterion.weight));
 		if (sample_set_init(&table, g, measurement, 1) != STATUS_OK) {
 			row_of("float error", "E")->refused++;
 			continue;
@@ -914,9 +915,9 @@ static void sweep_float(void)
 		struct fit_options options = fit_options_default();
 		struct geometry geometry;
 		struct sample_set table;
-		options.gaf = (enum gaf)gaf;
-		options.bins = gaf == GAF_CORRELATED ? BINS_CENTRE : BINS_NODE;
-		options.weight = (enum weight)(gaf % WEIGHT_COUNT);
+		options.criterion.gaf = (enum gaf)gaf;
+		options.criterion.bins = gaf == GAF_CORRELATED ? BINS_CENTRE : BINS_NODE;
+		options.criterion.weight = (enum weight)(gaf % WEIGHT_COUNT);
 		options.threads = 1;
 		for (size_t e = 0; e < measurement_count(&measurement); e++)
 			for (int c = 0; c < MERL_CHANNELS; c++)

@@ -19,7 +19,7 @@ static struct fit_options options_for(const struct algorithm *algorithm, struct 
 	o.ndf[0] = ndf_find("std");
 	o.n_ndf = 1;
 	o.threads = 2;
-	o.max_theta = 25;
+	o.criterion.max_theta = 25;
 	o.time_s = 0.01;
 	o.algorithm = algorithm;
 	o.trace = trace_note;

@@ -75,7 +75,7 @@ static double error_within(double max_theta, const struct cook_torrance *truth, 
 	struct fit_metrics metrics;
 	struct error error = {""};
 
-	options.max_theta = max_theta;
+	options.criterion.max_theta = max_theta;
 	assert_int_equal(model_table(truth, BINS_NODE, 180, max_theta, 1, &measurement), STATUS_OK);
 	assert_int_equal(fit_eval(&measurement, model, &options, &metrics, &error), STATUS_OK);
 	measurement_free(&measurement);

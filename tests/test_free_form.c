@@ -30,8 +30,8 @@ static void check_floor(enum bins bins)
 	struct fit_metrics metrics;
 	struct measurement measurement = made(bins);
 
-	o.bins = bins;
-	o.max_theta = 70;
+	o.criterion.bins = bins;
+	o.criterion.max_theta = 70;
 	o.threads = 2;
 	o.ndf[o.n_ndf++] = ndf_find("pl");
 	run_fit(&measurement, &o, r);

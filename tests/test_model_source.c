@@ -96,7 +96,7 @@ static void a_row_is_the_model_that_was_fitted(void **state)
 	for (size_t i = 0; i < 2; i++) {
 		same_model(&rows.model[i], &fitted.model[i]);
 		assert_true(rows.model[i].error == fitted.model[i].error);
-		assert_true(rows.model[i].fit.max_theta == 12);
+		assert_true(rows.model[i].fit.criterion.max_theta == 12);
 		assert_int_equal(rows.model[i].row, i + 1);
 	}
 	model_source_free(&rows);

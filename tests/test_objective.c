@@ -9,10 +9,10 @@ static struct fit_options options_with(enum gaf gaf, enum weight weight, enum bi
 {
 	struct fit_options o = fit_options_default();
 
-	o.gaf = gaf;
-	o.weight = weight;
-	o.bins = bins;
-	o.max_theta = max_theta;
+	o.criterion.gaf = gaf;
+	o.criterion.weight = weight;
+	o.criterion.bins = bins;
+	o.criterion.max_theta = max_theta;
 	o.threads = 2;
 	return o;
 }
@@ -60,9 +60,10 @@ static struct reference brute_force(const struct measurement *measurement, const
 				struct vec3 wi, wo;
 				double f[3];
 
-				halfdiff_trig_dirs(bins_trig(o->bins, i, j, k), &wi, &wo);
+				halfdiff_trig_dirs(bins_trig(o->criterion.bins, i, j, k), &wi, &wo);
 				if (wi.z <= 1e-9 || wo.z <= 1e-9 || isnan(measurement->value[0][at]) ||
-				    acos(wi.z) * deg > o->max_theta + 1e-9 || acos(wo.z) * deg > o->max_theta + 1e-9)
+				    acos(wi.z) * deg > o->criterion.max_theta + 1e-9 ||
+				    acos(wo.z) * deg > o->criterion.max_theta + 1e-9)
 					continue;
 				cook_torrance_f(model, wi, wo, f);
 				for (int c = 0; c < 3; c++) {

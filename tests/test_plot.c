@@ -36,10 +36,10 @@ static void the_map_adds_up_to_the_error(void **state)
 		struct fit_options options = fit_options_default();
 		struct cook_torrance model = make_model("std", 0.19, 2.385, 1.5);
 		/* Centres: then the table is of something else, and adds up as well. */
-		options.bins = run == 1 ? BINS_CENTRE : BINS_NODE;
-		options.weight = (enum weight)(run % WEIGHT_COUNT);
-		options.max_theta = run == 2 ? 71 : 90;
-		model.gaf = options.gaf = run == 3 ? GAF_V_GROOVE : GAF_UNCORRELATED;
+		options.criterion.bins = run == 1 ? BINS_CENTRE : BINS_NODE;
+		options.criterion.weight = (enum weight)(run % WEIGHT_COUNT);
+		options.criterion.max_theta = run == 2 ? 71 : 90;
+		model.gaf = options.criterion.gaf = run == 3 ? GAF_V_GROOVE : GAF_UNCORRELATED;
 		struct fit_metrics metrics;
 		struct error error;
 		double difference = 0, measured = 0;
@@ -51,7 +51,7 @@ static void the_map_adds_up_to_the_error(void **state)
 			measured += rows[r].measured;
 			n += rows[r].samples;
 		}
-		check_rel(difference / measured, metrics.error[options.weight], 1e-12, "sum of the map");
+		check_rel(difference / measured, metrics.error[options.criterion.weight], 1e-12, "sum of the map");
 		assert_int_equal(n, metrics.samples);
 		assert_int_equal(rows[30 * MERL_THETA_D + 20].samples, 0);
 		assert_true(isnan(error_map_error(&rows[30 * MERL_THETA_D + 20])));

@@ -48,7 +48,7 @@ static void two_at_once(void **state)
 		job[j] = (struct job){.table = make_table(&model[j], 180, BINS_NODE, 0.1),
 				      .options = fit_options_default()};
 		job[j].options.threads = 1 + j;
-		job[j].options.max_theta = 15;
+		job[j].options.criterion.max_theta = 15;
 		job[j].options.starts = 1;
 		assert_int_equal(job[j].options.n_ndf, NDFS);
 	}

@@ -451,8 +451,10 @@ int options_model(const struct options *options, struct cook_torrance *model)
 	const int wrong = check_model(options);
 	if (wrong >= 0)
 		return wrong;
-	*model = (struct cook_torrance){
-		.gaf = fit->gaf, .fresnel = fit->fresnel, .n = isnan(fit->ior) ? 1.5 : fit->ior, .k = options->k};
+	*model = (struct cook_torrance){.gaf = fit->criterion.gaf,
+					.fresnel = fit->fresnel,
+					.n = isnan(fit->ior) ? 1.5 : fit->ior,
+					.k = options->k};
 	memcpy(model->kd, options->kd, sizeof model->kd);
 	memcpy(model->ks, options->ks, sizeof model->ks);
 	const double sigma = isnan(fit->sigma) ? 1 : fit->sigma, gamma = isnan(fit->gamma) ? 2 : fit->gamma;

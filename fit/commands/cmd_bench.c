@@ -313,7 +313,7 @@ static enum status eval_exact(struct bench *b, const struct fit_result *result, 
 		return error_set(&b->error, status, "%s", status_str(status));
 	status = fit_eval(&b->measurement, &model, fit, &metrics, &b->error);
 	if (!status)
-		*error = metrics.error[fit->weight];
+		*error = metrics.error[fit->criterion.weight];
 	return status;
 }
 
@@ -408,7 +408,7 @@ static int check(const struct options *options)
 	for (size_t i = 0; i < sizeof excluded / sizeof *excluded && options->forms; i++)
 		if (options_given(options, excluded[i]))
 			return options_usage(COMMAND_BENCH, "--forms and --%s exclude each other", excluded[i]);
-	if (options->forms && options->fit.gaf == GAF_V_GROOVE)
+	if (options->forms && options->fit.criterion.gaf == GAF_V_GROOVE)
 		return options_usage(COMMAND_BENCH, "--forms means nothing with --gaf v-groove, which has no Lambda");
 	if (options->forms && !has_forms(options->fit.ndf[0]))
 		return options_usage(COMMAND_BENCH, "--forms means nothing for %s, which has the exact Lambda only",

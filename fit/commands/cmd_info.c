@@ -180,7 +180,7 @@ static enum status inspect(struct csv_table *table, const struct options *option
 	enum status status = merl_read(path, options->fit.threads, &measurement, error);
 	if (status)
 		return status;
-	status = take_census(&measurement, options->fit.bins, &census);
+	status = take_census(&measurement, options->fit.criterion.bins, &census);
 	if (!status)
 		status = add_file(table, path, &measurement, &census);
 	if (status)

@@ -191,7 +191,7 @@ static enum status run_row(const struct options *options, char *const *row, size
 	if (!status) {
 		status = row_place(options, row, &place, &why);
 		if (!status)
-			evaluate(&line, &distribution, options->fit.gaf, place);
+			evaluate(&line, &distribution, options->fit.criterion.gaf, place);
 		distribution_free(&distribution);
 	}
 	if (status == STATUS_DOMAIN) {

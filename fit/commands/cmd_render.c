@@ -79,7 +79,7 @@ static enum status choose(const struct render *render, const struct model_source
 		if (chosen->n == COLUMNS_MAX)
 			return error_set(error, STATUS_UNSUPPORTED, "'%.150s' has more than %d models", model->material,
 					 COLUMNS_MAX);
-		if (chosen->n && model->fit.bins != chosen->model[0]->fit.bins)
+		if (chosen->n && model->fit.criterion.bins != chosen->model[0]->fit.criterion.bins)
 			return error_set(error, STATUS_UNSUPPORTED,
 					 "the models of '%.150s' were fitted with different bins", model->material);
 		chosen->model[chosen->n++] = model;
@@ -194,7 +194,7 @@ static enum status show_models(struct render *render, const char *path, const st
 	for (int i = 0; i < chosen->n; i++)
 		model[i] = (struct pictures_model){&chosen->model[i]->model, chosen->model[i]->error};
 	enum status status =
-		material ? pictures_render(measurement, chosen->model[0]->fit.bins, model, chosen->n,
+		material ? pictures_render(measurement, chosen->model[0]->fit.criterion.bins, model, chosen->n,
 					   render->options->sampling, &render->environment, &render->sphere, &pictures)
 			 : STATUS_NO_MEMORY;
 	for (int i = 0; i < chosen->n && !status; i++)

@@ -116,7 +116,7 @@ static enum status parts_init(struct parts *parts, const struct geometry *g, con
 	}
 	if (masking_init(&parts->masking, g->q_min, MASKING_FINE) != STATUS_OK)
 		return STATUS_NO_MEMORY;
-	if (g->gaf != GAF_V_GROOVE)
+	if (g->criterion.gaf != GAF_V_GROOVE)
 		masking_fill(&parts->masking, &model->ndf);
 	return STATUS_OK;
 }
@@ -136,11 +136,11 @@ static double lobe_at(const struct parts *p, const struct geometry *g, int n, do
 	const double spread = p->D[g->row[n] / MERL_THETA_D] * p->F[g->row[n] % MERL_THETA_D];
 
 	/* geometric_factor and w both carry the weight of the fit; geometric_factor alone has the v-groove's G. */
-	if (g->gaf == GAF_V_GROOVE)
+	if (g->criterion.gaf == GAF_V_GROOVE)
 		return spread * (double)g->geometric_factor[n] / (double)g->w[n];
 	const double i = masking_at(&p->masking, g->q_i[n]), o = masking_at(&p->masking, g->q_o[n]);
 
-	if (g->gaf == GAF_UNCORRELATED)
+	if (g->criterion.gaf == GAF_UNCORRELATED)
 		return spread * i * o / (4 * c);
 	return i > 0 && o > 0 ? spread / (4 * c * (1 / i + 1 / o - 1)) : 0;
 }
@@ -213,7 +213,8 @@ enum status metrics_rows(const struct geometry *g, const struct measurement *mea
 		sum_theta_h(g, measurement, model, &parts, i, true, sums + (size_t)i * MERL_THETA_D);
 	masking_free(&parts.masking);
 	for (int n = 0; n < MERL_ROWS; n++)
-		row[n] = (struct metrics_row){sums[n].difference[g->weight], sums[n].measured[g->weight], sums[n].n};
+		row[n] = (struct metrics_row){sums[n].difference[g->criterion.weight],
+					      sums[n].measured[g->criterion.weight], sums[n].n};
 	free(sums);
 	return STATUS_OK;
 }

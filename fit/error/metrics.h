@@ -5,6 +5,15 @@
 
 #include "fit/error/sample_set.h"
 
+/* struct fit_metrics - how far a model is from the table. */
+struct fit_metrics {
+	double error[WEIGHT_COUNT]; /* E under each weight */
+	double rms_cosine;          /* RMS of c (m - f), c = cos_i cos_o */
+	double rms_cube_root;       /* RMS of cbrt(c m) - cbrt(c f) */
+	double log_error;           /* mean |ln((c m + 1e-3)/(c f + 1e-3))| */
+	size_t samples;             /* table entries (of three channels) compared */
+};
+
 /* metrics_compute - compares `model` with the entries of `samples` that `geometry` has and that are valid.
  * Accuracy: relative error below 1e-7 of each metric against a sum of exact model values.
  * Errors: STATUS_NO_DATA when no entry is valid or all are zero, STATUS_NO_MEMORY. */

@@ -58,7 +58,7 @@ static void tabulate_ndf(struct objective *o, const struct ndf *ndf)
 
 	for (int i = 0; i < MERL_THETA_H; i++)
 		o->D[i] = ndf_D(ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
-	if (o->options->gaf != GAF_V_GROOVE)
+	if (o->options->criterion.gaf != GAF_V_GROOVE)
 		masking_fill(&o->masking, ndf);
 }
 
@@ -108,7 +108,7 @@ static void lobe_block(struct objective *o, int block)
 	const struct kernel_g1 g1 = masking_kernel(&o->masking);
 	const struct kernel_samples slots = sample_set_block(o->table, block);
 
-	o->kernel->lobe(gaf[o->options->gaf], &g1, o->row, &slots, o->s + (size_t)block * KERNEL_BLOCK);
+	o->kernel->lobe(gaf[o->options->criterion.gaf], &g1, o->row, &slots, o->s + (size_t)block * KERNEL_BLOCK);
 }
 
 /* What a pass is asked by each of the problems, one a channel or one for all of them. */

@@ -39,14 +39,14 @@ static int mirror(enum bins bins, int k)
 
 int geometry_members(const struct geometry *geometry, int n, int k[4])
 {
-	const int first = geometry->k[n], second = mirror(geometry->bins, first);
+	const int first = geometry->k[n], second = mirror(geometry->criterion.bins, first);
 	int count = 0;
 
 	k[count++] = first;
 	/* phi_d = 0 and 90 deg are their own mirrors; 180 is a node of the 360 table only. */
 	if (second != first && second < geometry->n_phi_d)
 		k[count++] = second;
-	if (geometry->n_phi_d == 360 && (geometry->bins == BINS_CENTRE || first != 0)) {
+	if (geometry->n_phi_d == 360 && (geometry->criterion.bins == BINS_CENTRE || first != 0)) {
 		k[count++] = first + 180;
 		if (second != first)
 			k[count++] = second + 180;
@@ -70,8 +70,8 @@ double max_theta_cos(double max_theta)
 
 static void set_sample(struct geometry *g, int n, int i, int j, int k, struct vec3 wi, struct vec3 wo)
 {
-	const double w = weight_at(g->weight, i, j, wi.z, wo.z);
-	const double G = g->gaf == GAF_V_GROOVE ? gaf_G(GAF_V_GROOVE, NULL, wi, wo) : 1;
+	const double w = weight_at(g->criterion.weight, i, j, wi.z, wo.z);
+	const double G = g->criterion.gaf == GAF_V_GROOVE ? gaf_G(GAF_V_GROOVE, NULL, wi, wo) : 1;
 
 	g->q_i[n] = masking_q(wi);
 	g->q_o[n] = masking_q(wo);
@@ -84,7 +84,7 @@ static void set_sample(struct geometry *g, int n, int i, int j, int k, struct ve
 /* Fills in the slots of one theta_h from place n on, or only counts them when n < 0. */
 static int row_samples(struct geometry *g, int i, double min_cos, int n)
 {
-	const int last_k = g->bins == BINS_NODE ? 90 : 89;
+	const int last_k = g->criterion.bins == BINS_NODE ? 90 : 89;
 	struct vec3 wi, wo;
 	int count = 0;
 
@@ -115,14 +115,11 @@ static enum status geometry_alloc(struct geometry *g)
 
 enum status geometry_init(struct geometry *g, int n_phi_d, const struct fit_options *options)
 {
-	const double min_cos = max_theta_cos(options->max_theta);
+	const double min_cos = max_theta_cos(options->criterion.max_theta);
 
-	*g = (struct geometry){.n_phi_d = n_phi_d,
-			       .bins = options->bins,
-			       .weight = options->weight,
-			       .gaf = options->gaf,
-			       .q_min = MASKING_Q_MAX << MASKING_Q_BITS};
-	g->entries = entries_make(g->bins, n_phi_d);
+	*g = (struct geometry){
+		.n_phi_d = n_phi_d, .criterion = options->criterion, .q_min = MASKING_Q_MAX << MASKING_Q_BITS};
+	g->entries = entries_make(g->criterion.bins, n_phi_d);
 #pragma omp parallel for num_threads(options->threads) schedule(dynamic)
 	for (int i = 0; i < MERL_THETA_H; i++)
 		g->first[i + 1] = row_samples(g, i, min_cos, -1);

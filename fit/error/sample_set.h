@@ -5,7 +5,7 @@
 
 #include "fit/error/entries.h"
 #include "fit/error/kernel.h"
-#include "fit/search/fit.h"
+#include "fit/error/options.h"
 #include <stddef.h>
 
 enum { MERL_ROWS = MERL_THETA_H * MERL_THETA_D };
@@ -14,9 +14,7 @@ enum { MERL_ROWS = MERL_THETA_H * MERL_THETA_D };
  * Slot n stands for the entries k of row (i, j) with the same model value: k, half - k, half + k, 2 half - k. */
 struct geometry {
 	int n_phi_d;
-	enum bins bins;
-	enum weight weight;
-	enum gaf gaf;
+	struct criterion criterion; /* that it was made for */
 	int n_samples;
 	int32_t *q_i, *q_o;          /* masking_q() of wi and wo */
 	float *geometric_factor;     /* w / (4 cos_i cos_o), times G for GAF_V_GROOVE */

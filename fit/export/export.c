@@ -47,7 +47,8 @@ enum status export_write(const struct export *export, FILE *file, struct error *
 
 enum status export_table(const struct export *export, struct measurement *measurement)
 {
-	return model_table(&export->model, export->source.fit->bins, 180, 90, export->source.fit->threads, measurement);
+	return model_table(&export->model, export->source.fit->criterion.bins, 180, 90, export->source.fit->threads,
+			   measurement);
 }
 
 enum status export_as_it_is(struct export *export, const char *text)
@@ -61,7 +62,7 @@ static enum status merl_prepare(struct export *export, struct error *error)
 	char text[EXPORT_TEXT];
 	(void)error;
 	snprintf(text, sizeof text, "the model at the entries of the table (%s bins), to the 24 bits of a float",
-		 bins_name(export->source.fit->bins));
+		 bins_name(export->source.fit->criterion.bins));
 	return export_as_it_is(export, text);
 }
 

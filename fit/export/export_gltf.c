@@ -43,7 +43,7 @@ static void add_row(const struct export *export, const struct measurement *measu
 		    int i, double sum[2])
 {
 	const struct fit_options *fit = export->source.fit;
-	const double min_cos = max_theta_cos(fit->max_theta);
+	const double min_cos = max_theta_cos(fit->criterion.max_theta);
 	for (int j = 0; j < MERL_THETA_D; j++)
 		for (int k = 0; k < measurement->n_phi_d; k++) {
 			const size_t at = measurement_at(measurement->n_phi_d, i, j, k);
@@ -53,7 +53,7 @@ static void add_row(const struct export *export, const struct measurement *measu
 			if (isnan(measurement->value[0][at]) || !entry_in_range(wi, wo, min_cos))
 				continue;
 			gltf_f(&export->model, wi, wo, f);
-			const double w = weight_at(fit->weight, i, j, wi.z, wo.z);
+			const double w = weight_at(fit->criterion.weight, i, j, wi.z, wo.z);
 			for (int c = 0; c < MERL_CHANNELS; c++) {
 				sum[0] += w * fabs((double)measurement->value[c][at] - f[c]);
 				sum[1] += w * (double)measurement->value[c][at];
@@ -64,7 +64,7 @@ static void add_row(const struct export *export, const struct measurement *measu
 /* E of what a viewer makes of the model. */
 static double gltf_error(const struct export *export, const struct measurement *measurement)
 {
-	const struct entries entries = entries_make(export->source.fit->bins, measurement->n_phi_d);
+	const struct entries entries = entries_make(export->source.fit->criterion.bins, measurement->n_phi_d);
 	double sum[MERL_THETA_H][2] = {{0}}, difference = 0, all = 0;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(export->source.fit->threads)
 	for (int i = 0; i < MERL_THETA_H; i++)

@@ -79,9 +79,10 @@ static void write_fitted(FILE *file, const struct export_source *source)
 {
 	fputs("  \"fitted\": {\"path\": ", file);
 	write_string(file, source->path);
-	fprintf(file, ", \"weight\": \"%s\", \"bins\": \"%s\", \"max_theta\": ", weight_name(source->fit->weight),
-		bins_name(source->fit->bins));
-	write_number(file, source->fit->max_theta);
+	fprintf(file,
+		", \"weight\": \"%s\", \"bins\": \"%s\", \"max_theta\": ", weight_name(source->fit->criterion.weight),
+		bins_name(source->fit->criterion.bins));
+	write_number(file, source->fit->criterion.max_theta);
 	fputs(", \"error\": ", file);
 	write_number(file, source->error);
 	fputs("}\n", file);

@@ -34,8 +34,8 @@ static double weighted_median(struct wanted *wanted, size_t n)
 static size_t look(const struct measurement *measurement, const struct fit_options *fit,
 		   const struct cook_torrance *model, struct wanted *wanted, size_t *at)
 {
-	const struct entries entries = entries_make(fit->bins, measurement->n_phi_d);
-	const double min_cos = max_theta_cos(fit->max_theta);
+	const struct entries entries = entries_make(fit->criterion.bins, measurement->n_phi_d);
+	const double min_cos = max_theta_cos(fit->criterion.max_theta);
 	size_t n = 0, entry = 0;
 	for (int i = 0; i < MERL_THETA_H; i++)
 		for (int j = 0; j < MERL_THETA_D; j++)
@@ -47,7 +47,7 @@ static size_t look(const struct measurement *measurement, const struct fit_optio
 				if (!entry_in_range(wi, wo, min_cos))
 					continue;
 				wanted[n] = (struct wanted){(float)cook_torrance_lobe(model, wi, wo),
-							    (float)weight_at(fit->weight, i, j, wi.z, wo.z)};
+							    (float)weight_at(fit->criterion.weight, i, j, wi.z, wo.z)};
 				at[n++] = entry;
 			}
 	return n;

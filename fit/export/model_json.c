@@ -107,7 +107,7 @@ static enum status read_terms(const struct json *json, struct model_json *read, 
 		return bad("ior", "a positive number", error);
 	if (!(model->k >= 0 && model->k <= 1e75))
 		return bad("k", "a number, not negative", error);
-	fit->gaf = model->gaf;
+	fit->criterion.gaf = model->gaf;
 	fit->fresnel = model->fresnel;
 	fit->lambda = model->ndf.lambda_form;
 	return STATUS_OK;
@@ -123,10 +123,11 @@ static enum status read_fitted(const struct json *json, struct model_json *read,
 			       struct error *error)
 {
 	const struct json *fitted = json_member(json, "fitted");
-	fit->max_theta = number_of(json_member(fitted, "max_theta"));
+	fit->criterion.max_theta = number_of(json_member(fitted, "max_theta"));
 	read->error = number_of(json_member(fitted, "error"));
-	if (weight_find(text_of(fitted, "weight"), &fit->weight) || bins_find(text_of(fitted, "bins"), &fit->bins) ||
-	    !(fit->max_theta > 0 && fit->max_theta <= 90))
+	if (weight_find(text_of(fitted, "weight"), &fit->criterion.weight) ||
+	    bins_find(text_of(fitted, "bins"), &fit->criterion.bins) ||
+	    !(fit->criterion.max_theta > 0 && fit->criterion.max_theta <= 90))
 		return bad("fitted", "an object with weight, bins and max_theta", error);
 	if (!copy(text_of(json, "material"), &read->material) || !copy(text_of(fitted, "path"), &read->path))
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");

@@ -79,7 +79,8 @@ const struct measurement *stand_in_samples(const struct export_source *source, s
 	*own = (struct measurement){0};
 	if (source->measurement)
 		return source->measurement;
-	return model_table(source->model, source->fit->bins, 180, source->fit->max_theta, source->fit->threads, own)
+	return model_table(source->model, source->fit->criterion.bins, 180, source->fit->criterion.max_theta,
+			   source->fit->threads, own)
 		       ? NULL
 		       : own;
 }
@@ -102,7 +103,7 @@ static struct fit_options options_for(const struct target *target, const struct 
 	const struct cook_torrance *model = source->model;
 	struct fit_options fit = *source->fit;
 	choose_ndfs(target, model, &fit);
-	fit.gaf = target->gaf;
+	fit.criterion.gaf = target->gaf;
 	fit.fresnel = (target->fresnel & 1u << model->fresnel) ? model->fresnel : target->instead;
 	fit.lambda = LAMBDA_EXACT;
 	fit.sigma = fit.gamma = fit.ior = NAN;
@@ -240,7 +241,7 @@ static enum status error_of(const struct export *export, const struct measuremen
 	struct fit_metrics metrics;
 	const enum status status = fit_eval(measurement, model, export->source.fit, &metrics, error);
 	if (!status)
-		*value = metrics.error[export->source.fit->weight];
+		*value = metrics.error[export->source.fit->criterion.weight];
 	return status;
 }
 
@@ -267,7 +268,7 @@ static enum status tell_cost(struct export *export, const struct measurement *me
 	name_data(&export->source, name);
 	snprintf(export->cost, sizeof export->cost,
 		 "error of the model %.5g, of what stands here %.5g (weight %s, against %s)",
-		 export->source.measurement ? before : 0.0, after, weight_name(fit->weight), name);
+		 export->source.measurement ? before : 0.0, after, weight_name(fit->criterion.weight), name);
 	return STATUS_OK;
 }
 

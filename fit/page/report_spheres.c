@@ -32,7 +32,7 @@ enum status report_spheres(const char *path, const struct material_data *data, c
 	struct sheet sheet;
 	for (int f = 0; f < data->n; f++)
 		model[f] = (struct pictures_model){&data->fit[f].model, data->fit[f].error};
-	enum status status = pictures_render(&data->measurement, data->fit[0].options.bins, model, data->n,
+	enum status status = pictures_render(&data->measurement, data->fit[0].options.criterion.bins, model, data->n,
 					     SAMPLING_VISIBLE, environment, &sphere, &pictures);
 	if (status)
 		return error_set(error, status, "cannot render: %s", status_str(status));

@@ -8,7 +8,7 @@ enum status error_map_make(const struct measurement *measurement, const struct c
 	struct fit_options own = *options;
 	struct geometry geometry;
 
-	own.gaf = model->gaf;
+	own.criterion.gaf = model->gaf;
 	enum status status = geometry_init(&geometry, measurement->n_phi_d, &own);
 	if (status == STATUS_OK)
 		status = metrics_rows(&geometry, measurement, model, options->threads, row);

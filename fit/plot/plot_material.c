@@ -34,7 +34,7 @@ static double theta_d_deg(enum bins bins, int j)
 
 static enum bins bins_of(const struct material_data *data)
 {
-	return data->fit[0].options.bins;
+	return data->fit[0].options.criterion.bins;
 }
 
 /* theta_h in the table's own spacing, which gives the peak room. */
@@ -68,8 +68,8 @@ static enum status read_ndfs(const struct material_data *data, struct readings *
 	*readings = (struct readings){.made = {false}};
 	for (int f = 0; f < data->n; f++) {
 		const struct fitted *fit = &data->fit[f];
-		const enum status status =
-			measured_ndf_make(&data->measurement, &fit->model, fit->options.bins, &readings->ndf[f]);
+		const enum status status = measured_ndf_make(&data->measurement, &fit->model,
+							     fit->options.criterion.bins, &readings->ndf[f]);
 		if (status == STATUS_NO_MEMORY)
 			return error_set(error, status, "out of memory");
 		readings->made[f] = status == STATUS_OK;
@@ -228,7 +228,7 @@ static void put_slice(FILE *file, const struct material_data *data, int j, struc
 		slice_measured(&data->measurement, i, j, f);
 		plot_range_add(range, put_channels(file, f));
 		for (int n = 0; n < data->n; n++) {
-			slice_model(&data->fit[n].model, data->fit[n].options.bins, i, j, f);
+			slice_model(&data->fit[n].model, data->fit[n].options.criterion.bins, i, j, f);
 			put_channels(file, f);
 		}
 		fputc('\n', file);

@@ -105,12 +105,12 @@ static struct row *row_new(const struct result_source *source, const struct fit_
 	if (!row)
 		return NULL;
 	row->cell[RESULT_NDF] = ndf_name(ndf);
-	row->cell[RESULT_GAF] = gaf_name(options->gaf);
+	row->cell[RESULT_GAF] = gaf_name(options->criterion.gaf);
 	row->cell[RESULT_FRESNEL] = fresnel_name(options->fresnel);
 	row->cell[RESULT_LAMBDA] = lambda_form_name(options->lambda);
-	row->cell[RESULT_WEIGHT] = weight_name(options->weight);
-	row->cell[RESULT_BINS] = bins_name(options->bins);
-	set_number(row, RESULT_MAX_THETA, options->max_theta);
+	row->cell[RESULT_WEIGHT] = weight_name(options->criterion.weight);
+	row->cell[RESULT_BINS] = bins_name(options->criterion.bins);
+	set_number(row, RESULT_MAX_THETA, options->criterion.max_theta);
 	row->cell[RESULT_STATUS] = status;
 	row->cell[RESULT_PATH] = source->path;
 	row->cell[RESULT_INPUT] = source->input;
@@ -147,7 +147,7 @@ static void add_param(char params[PARAMS_SIZE], const char *name, double value)
 static void set_nodes(const struct fit_options *options, const struct ndf *ndf, char params[PARAMS_SIZE])
 {
 	for (int i = 0; i < FREE_FORM_VALUES; i++) {
-		const struct halfdiff_trig h = bins_trig(options->bins, i < MERL_THETA_H ? i : 0, 0, 0);
+		const struct halfdiff_trig h = bins_trig(options->criterion.bins, i < MERL_THETA_H ? i : 0, 0, 0);
 		const struct vec3 horizon = {1, 0, 1e-300};
 		char name[16];
 		snprintf(name, sizeof name, "D%d", i);
@@ -405,16 +405,16 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 		return bad_cell(row, RESULT_STATUS, error);
 	if (!ndf)
 		return bad_cell(row, RESULT_NDF, error);
-	if (gaf_find(row[RESULT_GAF], &options->gaf))
+	if (gaf_find(row[RESULT_GAF], &options->criterion.gaf))
 		return bad_cell(row, RESULT_GAF, error);
 	if (fresnel_find(row[RESULT_FRESNEL], &options->fresnel))
 		return bad_cell(row, RESULT_FRESNEL, error);
-	if (weight_find(row[RESULT_WEIGHT], &options->weight))
+	if (weight_find(row[RESULT_WEIGHT], &options->criterion.weight))
 		return bad_cell(row, RESULT_WEIGHT, error);
-	if (bins_find(row[RESULT_BINS], &options->bins))
+	if (bins_find(row[RESULT_BINS], &options->criterion.bins))
 		return bad_cell(row, RESULT_BINS, error);
-	options->max_theta = number_or(row, RESULT_MAX_THETA, 90);
-	if (!(options->max_theta > 0 && options->max_theta <= 90))
+	options->criterion.max_theta = number_or(row, RESULT_MAX_THETA, 90);
+	if (!(options->criterion.max_theta > 0 && options->criterion.max_theta <= 90))
 		return bad_cell(row, RESULT_MAX_THETA, error);
 	for (enum result_column c = 0; c < 3; c++) {
 		if (!is_factor(row, RESULT_KD_R + c, RESULT_KD_R))
@@ -429,12 +429,13 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 	if (options->fresnel == FRESNEL_CONDUCTOR && *row[RESULT_KS_R] &&
 	    !(result_param(row[RESULT_PARAMS], "k", &model->k) && model->k >= 0))
 		return bad_cell(row, RESULT_PARAMS, error);
-	model->gaf = options->gaf;
+	model->gaf = options->criterion.gaf;
 	model->fresnel = options->fresnel;
 	enum result_column wrong;
 	if (ndf_is_tabulated(ndf))
-		return result_nodes(row, options->bins, &model->ndf, pwl) ? bad_cell(row, RESULT_PARAMS, error)
-									  : STATUS_OK;
+		return result_nodes(row, options->criterion.bins, &model->ndf, pwl)
+			       ? bad_cell(row, RESULT_PARAMS, error)
+			       : STATUS_OK;
 	if (result_ndf(row, ndf, &model->ndf, &wrong))
 		return bad_cell(row, wrong, error);
 	return STATUS_OK;

@@ -1,51 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/search/fit.h"
 #include "fit/error/metrics.h"
 #include "fit/search/algorithms.h"
 #include "fit/search/free_form.h"
 #include "fit/search/undetermined.h"
-#include "src/names.h"
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
-
-static const char *const weight_names[WEIGHT_COUNT] = {
-	[WEIGHT_NONE] = "none", [WEIGHT_COSINE] = "cosine", [WEIGHT_SOLID_ANGLE] = "solid-angle"};
-
-const char *weight_name(enum weight weight)
-{
-	return names_at(weight_names, WEIGHT_COUNT, (int)weight);
-}
-
-enum status weight_find(const char *name, enum weight *weight)
-{
-	const int found = names_find(weight_names, WEIGHT_COUNT, name);
-
-	if (found < 0)
-		return STATUS_DOMAIN;
-	*weight = (enum weight)found;
-	return STATUS_OK;
-}
-
-struct fit_options fit_options_default(void)
-{
-	struct fit_options o = {.gaf = GAF_UNCORRELATED,
-				.fresnel = FRESNEL_DIELECTRIC,
-				.weight = WEIGHT_NONE,
-				.bins = BINS_NODE,
-				.max_theta = 90,
-				.diffuse = true,
-				.specular = true,
-				.ior = NAN,
-				.gamma = NAN,
-				.sigma = NAN,
-				.threads = omp_get_max_threads(),
-				.time_s = 10};
-	static const char *const names[] = {"std", "ggx", "beckmann"};
-
-	for (int n = 0; n < 3; n++)
-		o.ndf[o.n_ndf++] = ndf_find(names[n]);
-	return o;
-}
 
 struct fit_context {
 	struct geometry geometry;
@@ -69,6 +29,25 @@ void fit_context_free(struct fit_context *context)
 	if (context)
 		geometry_free(&context->geometry);
 	free(context);
+}
+
+/* Whether a context is one for this measurement and these options. */
+static enum status check_context(const struct fit_context *context, const struct measurement *measurement,
+				 const struct fit_options *options, struct error *error)
+{
+	const struct criterion *made_for = &context->geometry.criterion, *asked = &options->criterion;
+
+	if (measurement->n_phi_d != context->geometry.n_phi_d)
+		return error_set(error, STATUS_DOMAIN, "the context is for measurements of %d phi_d: this one has %d",
+				 context->geometry.n_phi_d, measurement->n_phi_d);
+	if (!criterion_equal(made_for, asked))
+		return error_set(error, STATUS_DOMAIN,
+				 "the context is for gaf %s, weight %s, bins %s, max_theta %g: the options say %s, %s, "
+				 "%s, %g",
+				 gaf_name(made_for->gaf), weight_name(made_for->weight), bins_name(made_for->bins),
+				 made_for->max_theta, gaf_name(asked->gaf), weight_name(asked->weight),
+				 bins_name(asked->bins), asked->max_theta);
+	return STATUS_OK;
 }
 
 /* One material under one set of options. */
@@ -130,7 +109,7 @@ static enum status result_with_ndf(const struct job *job, const struct found *fo
 
 	r->diffuse = o->diffuse;
 	r->specular = o->specular;
-	m->gaf = o->gaf;
+	m->gaf = o->criterion.gaf;
 	m->fresnel = o->fresnel;
 	m->n = found->shape.ior;
 	m->k = found->shape.k;
@@ -141,7 +120,7 @@ static enum status result_with_ndf(const struct job *job, const struct found *fo
 	status = metrics_compute(&job->context->geometry, job->measurement, m, o->threads, &r->metrics);
 	if (status != STATUS_OK)
 		return status;
-	r->error = r->metrics.error[o->weight];
+	r->error = r->metrics.error[o->criterion.weight];
 	r->lower_bound = found->linear.lower_bound;
 	r->end = found->limited ? FIT_LIMIT : FIT_CONVERGED;
 	r->starts = found->starts;
@@ -530,7 +509,11 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 	struct job job = {.context = context, .measurement = measurement, .options = options, .evidence = evidence};
 	struct nested nested = {.done = {false}};
 	struct sample_set full;
-	enum status status = sample_set_init(&full, &context->geometry, measurement, options->threads);
+	enum status status = check_context(context, measurement, options, error);
+
+	if (status != STATUS_OK)
+		return status;
+	status = sample_set_init(&full, &context->geometry, measurement, options->threads);
 
 	if (status == STATUS_NO_DATA)
 		return error_set(error, status, "no entry to fit: expected some valid ones that are not all zero");
@@ -558,10 +541,12 @@ enum status fit_estimate(const struct fit_context *context, const struct measure
 {
 	struct multiresolution levels;
 	struct sample_set full;
-	enum status status = sample_set_init(&full, &context->geometry, measurement, options->threads);
+	enum status status = check_context(context, measurement, options, NULL);
 	bool known = true;
 
 	*error = INFINITY;
+	if (status == STATUS_OK)
+		status = sample_set_init(&full, &context->geometry, measurement, options->threads);
 	if (status != STATUS_OK)
 		return status;
 	status = multiresolution_init(&levels, &full);
@@ -587,7 +572,7 @@ enum status fit_eval(const struct measurement *measurement, const struct cook_to
 	struct fit_context *context;
 	enum status status;
 
-	own.gaf = model->gaf;
+	own.criterion.gaf = model->gaf;
 	status = fit_context_new(&context, measurement->n_phi_d, &own);
 	if (status == STATUS_OK)
 		status = metrics_compute(&context->geometry, measurement, model, options->threads, metrics);

@@ -3,90 +3,7 @@
 #ifndef FIT_H
 #define FIT_H
 
-#include "data_readers/measurement.h"
-#include "src/cook_torrance.h"
-#include <stdbool.h>
-#ifdef __cplusplus
-#include <atomic>
-using std::atomic_bool;
-#else
-#include <stdatomic.h>
-#endif
-
-/* How an entry counts in the error E = sum w |m - f| / sum w m. */
-enum weight {
-	WEIGHT_NONE,        /* 1 */
-	WEIGHT_COSINE,      /* cos_i cos_o */
-	WEIGHT_SOLID_ANGLE, /* cos_i cos_o times the cell's measure */
-	WEIGHT_COUNT
-};
-
-const char *weight_name(enum weight weight); /* "none", "cosine", "solid-angle" */
-MUST_CHECK enum status weight_find(const char *name, enum weight *weight);
-
-/* Domain of the fit. */
-#define FIT_SIGMA_MIN 1e-4
-#define FIT_SIGMA_MAX 4.0
-#define FIT_GAMMA_MIN 1.5001
-#define FIT_GAMMA_MAX 1000.0
-#define FIT_IOR_MIN 1.0001
-#define FIT_IOR_MAX 100.0
-#define FIT_K_MAX 100.0
-#define FIT_FACTOR_MAX 1e6 /* kd, ks when unbounded: far beyond any material */
-
-enum { FIT_NDFS_MAX = 16 };
-
-struct algorithm;
-
-/* struct fit_trace - a step of a search. */
-struct fit_trace {
-	const struct ndf_class *ndf;
-	const char *stage;           /* "scan", "thin-1" .. "thin-3" (ever larger samples of the table), "full" */
-	double sigma, gamma, ior, k; /* the shape; NaN where the model has none */
-	double error;                /* E on the stage's table: on a thinned one an estimate */
-	long evaluations;            /* shapes evaluated so far in searching for this NDF */
-	double seconds;              /* spent on that */
-};
-
-/* struct fit_options - everything that changes a result; see fit_options_default(). NaN = free. */
-struct fit_options {
-	const struct ndf_class *ndf[FIT_NDFS_MAX]; /* the NDFs to fit, in this order */
-	int n_ndf;
-	enum gaf gaf;
-	enum fresnel fresnel;
-	enum lambda_form lambda; /* of STD and its family; the other NDFs have their exact form only */
-	enum weight weight;
-	enum bins bins;
-	double max_theta; /* degrees; entries with theta_i or theta_o above it are dropped; 90 = none */
-	bool unbounded;   /* kd, ks in [0, inf) instead of [0, 1] */
-	double blend;     /* in (0, 1): kd in [0, 1 - blend], ks in [0, blend], not unbounded; 0 (default): not so */
-	bool diffuse;     /* false: kd = 0 */
-	bool specular;    /* false: ks = 0, no shape is searched */
-	bool gray;        /* one kd and one ks for the three channels */
-	double ior, gamma, sigma; /* fixed value, or NaN */
-	int starts;               /* extra random starts, which skip the coarsest table; 0 by default */
-	uint64_t seed;
-	int threads;                       /* threads of one fit; changes no result */
-	const struct algorithm *algorithm; /* NULL: the default search; else one of algorithms.h, */
-	double time_s;                     /* which ends after this many seconds */
-	/* Called whenever a search finds a better shape on the table it is working on, by one thread at a time; NULL: never. */
-	void (*trace)(void *trace_data, const struct fit_trace *point);
-	void *trace_data;
-	/* Set to true from a signal handler or another thread to stop; may be NULL. */
-	const atomic_bool *cancel;
-};
-
-/* struct fit_options' defaults: STD, GGX and Beckmann, the paper's model and error, all processors. */
-struct fit_options fit_options_default(void);
-
-/* struct fit_metrics - how far a model is from the table. */
-struct fit_metrics {
-	double error[WEIGHT_COUNT]; /* E under each weight */
-	double rms_cosine;          /* RMS of c (m - f), c = cos_i cos_o */
-	double rms_cube_root;       /* RMS of cbrt(c m) - cbrt(c f) */
-	double log_error;           /* mean |ln((c m + 1e-3)/(c f + 1e-3))| */
-	size_t samples;             /* table entries (of three channels) compared */
-};
+#include "fit/error/metrics.h"
 
 enum fit_end {
 	FIT_CONVERGED,
@@ -132,10 +49,11 @@ struct fit_result {
 	double seconds;
 };
 
-/* struct fit_context - the geometry of a kind of table under given options, shared by fits, read-only once made. */
+/* struct fit_context - the geometry of a kind of measurement under a criterion, shared by fits, read-only once made. It
+ * owns what it was made for: n_phi_d and the criterion. */
 struct fit_context;
 
-/* fit_context_new - precomputes what depends on (n_phi_d, bins, weight, max_theta, gaf) only. */
+/* fit_context_new - precomputes what depends on n_phi_d and options->criterion only. */
 MUST_CHECK enum status fit_context_new(struct fit_context **context, int n_phi_d, const struct fit_options *options);
 void fit_context_free(struct fit_context *context);
 
@@ -147,7 +65,8 @@ void fit_result_free(struct fit_result *result);
  * than the default fit each NDF by itself.
  * pl, the piecewise-linear NDF, is fitted to the table itself (free_form.h), from the optima of STD, GGX and Beckmann.
  * On success each result is to be freed with fit_result_free(). Wants 400 kB of stack.
- * Errors: STATUS_NO_DATA (no valid entry, all zero), STATUS_NO_MEMORY, STATUS_INTERRUPTED. */
+ * Errors: STATUS_DOMAIN (the context was made for another n_phi_d or criterion), STATUS_NO_DATA (no valid entry, all
+ * zero), STATUS_NO_MEMORY, STATUS_INTERRUPTED. */
 MUST_CHECK enum status fit_run(const struct fit_context *context, const struct measurement *measurement,
 			       const struct fit_options *options, struct fit_result *results, struct error *error);
 

@@ -58,7 +58,7 @@ static enum status use(const struct run *r, struct objective *objective, const s
 {
 	struct pwl pwl;
 	struct ndf ndf;
-	const enum status status = free_form_pwl(r->options->bins, s->D, &pwl);
+	const enum status status = free_form_pwl(r->options->criterion.bins, s->D, &pwl);
 
 	if (status != STATUS_OK)
 		return status;
@@ -253,7 +253,7 @@ static double lambda_with_rim(const struct run *r, struct state *s, double rim)
 	double lambda;
 
 	s->D[MERL_THETA_H] = rim;
-	if (free_form_pwl(r->options->bins, s->D, &pwl) != STATUS_OK)
+	if (free_form_pwl(r->options->criterion.bins, s->D, &pwl) != STATUS_OK)
 		return NAN;
 	lambda = pwl_lambda(&pwl, (struct vec3){M_SQRT1_2, 0, M_SQRT1_2});
 	pwl_free(&pwl);
@@ -324,7 +324,7 @@ enum status free_form_run(const struct multiresolution *levels, const struct fit
 	if (status == STATUS_OK)
 		status = evaluate(&r, &best, 1e-7, true);
 	if (status == STATUS_OK)
-		status = free_form_pwl(options->bins, best.D, pwl);
+		status = free_form_pwl(options->criterion.bins, best.D, pwl);
 	if (status == STATUS_OK) {
 		found->shape = best.shape;
 		found->linear = best.linear;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/search/undetermined.h"
+#include "fit/search/fit.h"
 #include <math.h>
 #include <string.h>
 

@@ -25,7 +25,7 @@ static enum status describe(const struct options *options, struct described *ite
 	const size_t length = comma ? (size_t)(comma - sigma) : strlen(sigma);
 	snprintf(item->sigma, sizeof item->sigma, "%.*s", (int)length, sigma);
 	snprintf(item->sigma_y, sizeof item->sigma_y, "%s", comma ? comma + 1 : "");
-	item->gaf = options->fit.gaf;
+	item->gaf = options->fit.criterion.gaf;
 	item->words = (struct distribution_words){
 		.name = options->path[0],
 		.sigma = item->sigma,

@@ -18,7 +18,7 @@ struct source_model {
 	struct pwl *pwl; /* the table of model.ndf, if that is pl */
 	struct fit_options
 		fit;    /* the command's, with the G, F, weight, bins, max_theta that the model was fitted under */
-	double error;   /* E under fit.weight as fitted, as the row has it; NaN for given parameters */
+	double error;   /* E under fit.criterion.weight as fitted, as the row has it; NaN for given parameters */
 	char *material; /* of the row or the file; NULL: given parameters without a file */
 	char *path;     /* the MERL file that it was fitted to, as the row has it; NULL: none, or not known */
 	char input[RESULT_INPUT_SIZE]; /* size and hash of that file, as the row has them; "": not known */

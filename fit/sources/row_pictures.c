@@ -28,7 +28,7 @@ static enum status cannot(char *const *row, enum status status, const char *why,
 static enum status models_read(struct models *m, char **const *rows, size_t n, const struct fit_options *options,
 			       struct error *error)
 {
-	*m = (struct models){.bins = options->bins,
+	*m = (struct models){.bins = options->criterion.bins,
 			     .model = calloc(n, sizeof *m->model),
 			     .pwl = calloc(n, sizeof *m->pwl),
 			     .shown = calloc(n, sizeof *m->shown),
@@ -44,7 +44,7 @@ static enum status models_read(struct models *m, char **const *rows, size_t n, c
 		const enum status status = result_model(rows[i], &m->model[at], &fit, &m->pwl[at], &why);
 		if (status)
 			return cannot(rows[i], status, why.text, error);
-		m->bins = fit.bins;
+		m->bins = fit.criterion.bins;
 		m->shown[at] = (struct pictures_model){&m->model[at], result_number(rows[i], RESULT_ERROR)};
 		m->row[m->n++] = i;
 	}
