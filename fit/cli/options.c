@@ -295,24 +295,13 @@ static bool has_tabulated(const struct fit_options *fit)
 	return false;
 }
 
-/* The first NDF, if any, that does not take the fixed gamma, exactly or in the chosen form of Lambda. */
-static const struct ndf_class *refuses_gamma(const struct fit_options *fit)
-{
-	for (int i = 0; i < fit->n_ndf; i++) {
-		const struct shape shape = {.sigma = 0.1, .gamma = fit->gamma};
-		struct ndf ndf;
-		if (ndf_has_gamma(fit->ndf[i]) && !isnan(fit->gamma) &&
-		    shape_ndf(&shape, fit->ndf[i], fit->lambda, &ndf) != STATUS_OK)
-			return fit->ndf[i];
-	}
-	return NULL;
-}
-
 /* Combinations in which some option would be ignored, or nothing could come out. */
 int options_check_fit(const struct options *options)
 {
 	const struct fit_options *fit = &options->fit;
-	if (!fit->diffuse && !fit->specular)
+	struct error why = {""};
+	const enum fit_rule broken = fit_options_rule(fit, &why);
+	if (broken == FIT_RULE_TERMS)
 		return options_usage(options->command, "--no-diffuse and --no-specular leave nothing to fit");
 	static const char *const shape[] = {"sigma", "gamma", "ior"};
 	for (size_t i = 0; i < sizeof shape / sizeof *shape; i++)
@@ -322,16 +311,16 @@ int options_check_fit(const struct options *options)
 		return options_usage(options->command, "--ior means nothing with --fresnel none");
 	if (options_given(options, "gamma") && !any_has_gamma(fit))
 		return options_usage(options->command, "--gamma means nothing for these NDFs");
-	if (has_tabulated(fit) && (!fit->specular || fit->algorithm || options->command == COMMAND_BENCH ||
-				   options_given(options, "trace") || !isnan(options->within)))
+	if (broken == FIT_RULE_TABULATED ||
+	    (has_tabulated(fit) &&
+	     (options->command == COMMAND_BENCH || options_given(options, "trace") || !isnan(options->within))))
 		return options_usage(options->command,
 				     "--ndf pl goes with neither --no-specular, --algorithm, --trace, "
 				     "--within nor bench");
-	const struct ndf_class *refusing = refuses_gamma(fit);
-	if (refusing)
-		return options_usage(options->command,
-				     "invalid value %g for --gamma: %s with --lambda %s does not take it", fit->gamma,
-				     ndf_name(refusing), lambda_form_name(fit->lambda));
+	if (broken == FIT_RULE_GAMMA)
+		return options_usage(options->command, "invalid value for --gamma: %s", why.text);
+	if (broken != FIT_RULE_KEPT)
+		return options_usage(options->command, "%s", why.text);
 	if (options->command == COMMAND_FIT && !fit->algorithm && options_given(options, "time"))
 		return options_usage(options->command, "--time means nothing without another --algorithm than default");
 	if (fit->algorithm && options_given(options, "starts"))

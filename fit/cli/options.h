@@ -9,6 +9,7 @@
 #include "fit/cli/report.h"
 #include "fit/export/export.h"
 #include "fit/search/algorithms.h"
+#include "fit/search/options_check.h"
 #include "src/sampling.h"
 
 enum { OPTIONS_MAX = 128 }; /* rows of the option table, at most */

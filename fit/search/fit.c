@@ -3,6 +3,7 @@
 #include "fit/error/metrics.h"
 #include "fit/search/algorithms.h"
 #include "fit/search/free_form.h"
+#include "fit/search/options_check.h"
 #include "fit/search/undetermined.h"
 #include <math.h>
 #include <stdlib.h>
@@ -13,9 +14,11 @@ struct fit_context {
 
 enum status fit_context_new(struct fit_context **context, int n_phi_d, const struct fit_options *options)
 {
-	struct fit_context *c = calloc(1, sizeof *c);
-	enum status status = c ? geometry_init(&c->geometry, n_phi_d, options) : STATUS_NO_MEMORY;
+	enum status status = n_phi_d == 180 || n_phi_d == 360 ? fit_criterion_check(options, NULL) : STATUS_DOMAIN;
+	struct fit_context *c = status == STATUS_OK ? calloc(1, sizeof *c) : NULL;
 
+	if (status == STATUS_OK)
+		status = c ? geometry_init(&c->geometry, n_phi_d, options) : STATUS_NO_MEMORY;
 	if (status != STATUS_OK) {
 		free(c);
 		c = NULL;
@@ -31,12 +34,15 @@ void fit_context_free(struct fit_context *context)
 	free(context);
 }
 
-/* Whether a context is one for this measurement and these options. */
-static enum status check_context(const struct fit_context *context, const struct measurement *measurement,
-				 const struct fit_options *options, struct error *error)
+/* Whether the options keep the rules, and the context is one for them and this measurement. */
+static enum status check_arguments(const struct fit_context *context, const struct measurement *measurement,
+				   const struct fit_options *options, struct error *error)
 {
 	const struct criterion *made_for = &context->geometry.criterion, *asked = &options->criterion;
+	const enum status status = fit_options_check(options, error);
 
+	if (status != STATUS_OK)
+		return status;
 	if (measurement->n_phi_d != context->geometry.n_phi_d)
 		return error_set(error, STATUS_DOMAIN, "the context is for measurements of %d phi_d: this one has %d",
 				 context->geometry.n_phi_d, measurement->n_phi_d);
@@ -509,7 +515,7 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 	struct job job = {.context = context, .measurement = measurement, .options = options, .evidence = evidence};
 	struct nested nested = {.done = {false}};
 	struct sample_set full;
-	enum status status = check_context(context, measurement, options, error);
+	enum status status = check_arguments(context, measurement, options, error);
 
 	if (status != STATUS_OK)
 		return status;
@@ -541,7 +547,7 @@ enum status fit_estimate(const struct fit_context *context, const struct measure
 {
 	struct multiresolution levels;
 	struct sample_set full;
-	enum status status = check_context(context, measurement, options, NULL);
+	enum status status = check_arguments(context, measurement, options, NULL);
 	bool known = true;
 
 	*error = INFINITY;
@@ -573,6 +579,9 @@ enum status fit_eval(const struct measurement *measurement, const struct cook_to
 	enum status status;
 
 	own.criterion.gaf = model->gaf;
+	status = fit_criterion_check(&own, error);
+	if (status != STATUS_OK)
+		return status;
 	status = fit_context_new(&context, measurement->n_phi_d, &own);
 	if (status == STATUS_OK)
 		status = metrics_compute(&context->geometry, measurement, model, options->threads, metrics);

@@ -53,7 +53,8 @@ struct fit_result {
  * owns what it was made for: n_phi_d and the criterion. */
 struct fit_context;
 
-/* fit_context_new - precomputes what depends on n_phi_d and options->criterion only. */
+/* fit_context_new - precomputes what depends on n_phi_d and options->criterion only.
+ * Errors: STATUS_DOMAIN (n_phi_d neither 180 nor 360, or fit_criterion_check() refuses the options), STATUS_NO_MEMORY. */
 MUST_CHECK enum status fit_context_new(struct fit_context **context, int n_phi_d, const struct fit_options *options);
 void fit_context_free(struct fit_context *context);
 
@@ -65,7 +66,7 @@ void fit_result_free(struct fit_result *result);
  * than the default fit each NDF by itself.
  * pl, the piecewise-linear NDF, is fitted to the table itself (free_form.h), from the optima of STD, GGX and Beckmann.
  * On success each result is to be freed with fit_result_free(). Wants 400 kB of stack.
- * Errors: STATUS_DOMAIN (the context was made for another n_phi_d or criterion), STATUS_NO_DATA (no valid entry, all
+ * Errors: STATUS_DOMAIN (fit_options_check(), or the context was made for another n_phi_d or criterion), STATUS_NO_DATA (no valid entry, all
  * zero), STATUS_NO_MEMORY, STATUS_INTERRUPTED. */
 MUST_CHECK enum status fit_run(const struct fit_context *context, const struct measurement *measurement,
 			       const struct fit_options *options, struct fit_result *results, struct error *error);
@@ -76,7 +77,8 @@ MUST_CHECK enum status fit_run(const struct fit_context *context, const struct m
 MUST_CHECK enum status fit_estimate(const struct fit_context *context, const struct measurement *measurement,
 				    const struct fit_options *options, double *error);
 
-/* fit_eval - the metrics of a given model against a table, no fit. */
+/* fit_eval - the metrics of a given model against a table, no fit. Of the options only criterion (but its gaf, which is the
+ * model's) and threads are read, and checked. Errors as of fit_run(). */
 MUST_CHECK enum status fit_eval(const struct measurement *measurement, const struct cook_torrance *model,
 				const struct fit_options *options, struct fit_metrics *metrics, struct error *error);
 
