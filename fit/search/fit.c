@@ -174,6 +174,12 @@ struct nested {
 	struct fit_result result[NESTED], of_class[FIT_NDFS_MAX];
 };
 
+/* What a run remembers of its searches: 400 kB, too much for the stack of a thread. */
+struct memory {
+	struct nested nested;
+	struct scan_minima minima[FIT_NDFS_MAX];
+};
+
 static enum status fit_alone(const struct job *job, const struct ndf_class *class, struct fit_result *r)
 {
 	const double begin = search_clock();
@@ -396,8 +402,7 @@ static enum status fit_starts(const struct job *job, struct nested *nested, stru
 static enum status fit_free_form(const struct job *job, struct nested *nested, struct fit_result *r)
 {
 	const double begin = search_clock();
-	struct nested fresh = {.done = {false}};
-	struct scan_minima evidence[FIT_NDFS_MAX] = {{.slice = {{{.error = 0}}}}};
+	struct memory *fresh = NULL;
 	struct fit_options exact = *job->options;
 	struct job own = *job;
 	struct cook_torrance starts[5];
@@ -410,9 +415,14 @@ static enum status fit_free_form(const struct job *job, struct nested *nested, s
 	own.options = &exact;
 	const bool same = job->options->lambda == LAMBDA_EXACT && isnan(job->options->gamma);
 
-	if (!same)
-		own.evidence = evidence;
-	status = fit_starts(&own, same ? nested : &fresh, starts, &n_starts);
+	if (!same) {
+		fresh = calloc(1, sizeof *fresh);
+		if (!fresh)
+			return STATUS_NO_MEMORY;
+		own.evidence = fresh->minima;
+	}
+	status = fit_starts(&own, same ? nested : &fresh->nested, starts, &n_starts);
+	free(fresh);
 	if (status != STATUS_OK)
 		return status;
 	*r = (struct fit_result){.pwl = calloc(1, sizeof *r->pwl)};
@@ -511,16 +521,16 @@ static enum status find_undetermined(const struct job *job, const struct ndf_cla
 enum status fit_run(const struct fit_context *context, const struct measurement *measurement,
 		    const struct fit_options *options, struct fit_result *results, struct error *error)
 {
-	struct scan_minima evidence[FIT_NDFS_MAX] = {{.slice = {{{.error = 0}}}}};
-	struct job job = {.context = context, .measurement = measurement, .options = options, .evidence = evidence};
-	struct nested nested = {.done = {false}};
+	struct job job = {.context = context, .measurement = measurement, .options = options};
+	struct memory *memory = NULL;
 	struct sample_set full;
 	enum status status = check_arguments(context, measurement, options, error);
 
 	if (status != STATUS_OK)
 		return status;
+	for (int n = 0; n < options->n_ndf; n++)
+		results[n].pwl = NULL;
 	status = sample_set_init(&full, &context->geometry, measurement, options->threads);
-
 	if (status == STATUS_NO_DATA)
 		return error_set(error, status, "no entry to fit: expected some valid ones that are not all zero");
 	if (status == STATUS_OK && options->algorithm)
@@ -529,15 +539,19 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 		status = multiresolution_init(&job.levels, &full);
 	if (status != STATUS_OK)
 		return error_set(error, status, "%s", status_str(status));
-	for (int n = 0; n < options->n_ndf; n++)
-		results[n].pwl = NULL;
+	memory = calloc(1, sizeof *memory);
+	if (!memory)
+		status = STATUS_NO_MEMORY;
+	else
+		job.evidence = memory->minima;
 	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++) {
-		status = fit_class(&job, options->ndf[n], &nested, &results[n]);
+		status = fit_class(&job, options->ndf[n], &memory->nested, &results[n]);
 		if (status == STATUS_OK)
-			status = find_undetermined(&job, options->ndf[n], &nested, &results[n]);
+			status = find_undetermined(&job, options->ndf[n], &memory->nested, &results[n]);
 	}
 	for (int n = 0; n < options->n_ndf && status != STATUS_OK; n++)
 		fit_result_free(&results[n]);
+	free(memory);
 	multiresolution_free(&job.levels);
 	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
 }

@@ -65,7 +65,8 @@ void fit_result_free(struct fit_result *result);
  * Richer models never end above the nested ones: GGX's and Beckmann's optima are candidates of STD's. Other algorithms
  * than the default fit each NDF by itself.
  * pl, the piecewise-linear NDF, is fitted to the table itself (free_form.h), from the optima of STD, GGX and Beckmann.
- * On success each result is to be freed with fit_result_free(). Wants 400 kB of stack.
+ * On success each result is to be freed with fit_result_free(). 256 kB of stack are
+ * enough for the caller; OpenMP gives its own threads theirs (OMP_STACKSIZE).
  * Errors: STATUS_DOMAIN (fit_options_check(), or the context was made for another n_phi_d or criterion), STATUS_NO_DATA (no valid entry, all
  * zero), STATUS_NO_MEMORY, STATUS_INTERRUPTED. */
 MUST_CHECK enum status fit_run(const struct fit_context *context, const struct measurement *measurement,
