@@ -28,7 +28,7 @@ ALL_CFLAGS = -std=c11 -D_GNU_SOURCE $(warnings) $(OPT) -fopenmp $(fpflags) $(pic
 LIBS = $(pkg_libs) -lm
 
 # Each uses only those before it.
-folders := src data_readers $(addprefix fit/,error search results export render cli sources plot page commands)
+folders := src data_readers $(addprefix fit/,error search api results export render cli sources plot page commands)
 lib_sources := $(filter-out fit/commands/main.c,$(foreach folder,$(folders),$(wildcard $(folder)/*.c)))
 lib_objects := $(lib_sources:%.c=$(BUILD)/%.o)
 

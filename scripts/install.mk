@@ -9,11 +9,14 @@ NM ?= nm
 OBJCOPY ?= objcopy
 export NM
 
-library_folders := src data_readers fit/error fit/search
+library_folders := src data_readers fit/error fit/search fit/api
 library_objects := $(filter $(foreach f,$(library_folders),$(patsubst %.c,$(BUILD)/%.o,$(wildcard $(f)/*.c))) \
 	%/kernel_avx2.o,$(lib_objects))
-# What fit/stdfit.h includes is public; what that declares is exported, and nothing else.
-public_headers := fit/stdfit.h $(shell sed -n 's/^\#include "\(.*\)"/\1/p' fit/stdfit.h)
+# What the public header declares is exported, and nothing else.
+public_headers := fit/stdfit.h
+# What the library itself is linked with: pictures are the program's.
+library_pkgs := nlopt gsl libxxhash
+library_libs := $(shell $(PKG_CONFIG) --libs $(library_pkgs) 2>/dev/null) -lm
 shared := libstdfit.so.$(VERSION)
 soname := libstdfit.so.$(firstword $(subst ., ,$(VERSION)))
 
@@ -26,7 +29,7 @@ $(BUILD)/stdfit.exports: $(library_objects) $(public_headers) scripts/exports.sh
 $(BUILD)/$(shared): $(library_objects) $(BUILD)/stdfit.exports
 	@{ echo '{ global:'; sed 's/$$/;/' $(BUILD)/stdfit.exports; echo 'local: *; };'; } >$(BUILD)/stdfit.map
 	$(call quiet,LD)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -shared -Wl,-soname,$(soname) -Wl,-Bsymbolic \
-		-Wl,--version-script=$(BUILD)/stdfit.map -o $@ $(library_objects) $(LIBS)
+		-Wl,--version-script=$(BUILD)/stdfit.map -Wl,--as-needed -o $@ $(library_objects) $(library_libs)
 
 # One object, in which only the public names are global.
 $(BUILD)/libstdfit.a: $(library_objects) $(BUILD)/stdfit.exports
@@ -45,9 +48,8 @@ install: all library
 	ln -sf $(shared) "$(DESTDIR)$(libdir)/$(soname)"
 	ln -sf $(shared) "$(DESTDIR)$(libdir)/libstdfit.so"
 	$(call put,644,$(BUILD)/libstdfit.a,$(libdir))
-	for h in $(public_headers); do sed 's,^#include ".*/,#include ",' $$h >$(BUILD)/$${h##*/} && \
-		$(call put,644,$(BUILD)/$${h##*/},$(includedir)/stdfit) && rm $(BUILD)/$${h##*/} || exit 1; done
-	sed 's,@PREFIX@,$(PREFIX),; s,@LIBDIR@,$(libdir),; s,@INCLUDEDIR@,$(includedir),; s,@VERSION@,$(VERSION),; s,@REQUIRES@,$(PKGS),' \
+	$(call put,644,$(public_headers),$(includedir)/stdfit)
+	sed 's,@PREFIX@,$(PREFIX),; s,@LIBDIR@,$(libdir),; s,@INCLUDEDIR@,$(includedir),; s,@VERSION@,$(VERSION),; s,@REQUIRES@,$(library_pkgs),' \
 		scripts/stdfit.pc.in >$(BUILD)/stdfit.pc
 	$(call put,644,$(BUILD)/stdfit.pc,$(libdir)/pkgconfig)
 	$(call put,644,$(BUILD)/stdfit.1,$(datadir)/man/man1)

@@ -81,9 +81,18 @@ struct fit_options {
 	/* Called whenever a search finds a better shape on the table it is working on, by one thread at a time; NULL: never. */
 	void (*trace)(void *trace_data, const struct fit_trace *point);
 	void *trace_data;
-	/* Set to true from a signal handler or another thread to stop; may be NULL. */
+	/* Set to true, or to other than 0, from a signal handler or another thread to stop; may be NULL. The second is for
+	 * callers who know no C11 atomics. */
 	const atomic_bool *cancel;
+	const volatile int *stop;
 };
+
+/* fit_cancelled - whether the fit is to stop. */
+static inline bool fit_cancelled(const struct fit_options *options)
+{
+	return (options->cancel && atomic_load_explicit(options->cancel, memory_order_relaxed)) ||
+	       (options->stop && __atomic_load_n(options->stop, __ATOMIC_RELAXED));
+}
 
 /* struct fit_options' defaults: STD, GGX and Beckmann, the paper's model and error, all processors. */
 struct fit_options fit_options_default(void);

@@ -158,7 +158,7 @@ static enum status scan_blend(const struct fit_context *context, const struct me
 			double value;
 			tried.ndf[0] = fit->ndf[n];
 			tried.blend = (double)i / BLEND_SCAN;
-			status = fit_estimate(context, measurement, &tried, &value);
+			status = fit_estimate(context, measurement, &tried, &value, NULL);
 			if (!status && value < best) {
 				best = value;
 				chosen = tried;

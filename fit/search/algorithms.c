@@ -138,7 +138,7 @@ static void tell(const struct run *r, const struct shape *shape, double error)
 
 static bool cancelled(const struct run *r)
 {
-	return r->options->cancel && atomic_load_explicit(r->options->cancel, memory_order_relaxed);
+	return fit_cancelled(r->options);
 }
 
 static double time_left(const struct run *r)

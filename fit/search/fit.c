@@ -557,14 +557,14 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 }
 
 enum status fit_estimate(const struct fit_context *context, const struct measurement *measurement,
-			 const struct fit_options *options, double *error)
+			 const struct fit_options *options, double *estimate, struct error *error)
 {
 	struct multiresolution levels;
 	struct sample_set full;
-	enum status status = check_arguments(context, measurement, options, NULL);
+	enum status status = check_arguments(context, measurement, options, error);
 	bool known = true;
 
-	*error = INFINITY;
+	*estimate = INFINITY;
 	if (status == STATUS_OK)
 		status = sample_set_init(&full, &context->geometry, measurement, options->threads);
 	if (status != STATUS_OK)
@@ -576,11 +576,11 @@ enum status fit_estimate(const struct fit_context *context, const struct measure
 		double one;
 
 		status = search_estimate(&levels, options, options->ndf[n], &one);
-		*error = fmin(*error, one);
+		*estimate = fmin(*estimate, one);
 		known = known && isfinite(one);
 	}
 	if (!known)
-		*error = INFINITY;
+		*estimate = INFINITY;
 	multiresolution_free(&levels);
 	return status;
 }

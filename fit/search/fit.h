@@ -73,10 +73,10 @@ MUST_CHECK enum status fit_run(const struct fit_context *context, const struct m
 			       const struct fit_options *options, struct fit_result *results, struct error *error);
 
 /* fit_estimate - about the least error that any of the options' NDFs will end with, from samples of the table: within
- * 0.3 % as a rule, for a fraction of fit_run()'s work. INFINITY where one of them has no shape to search.
+ * 0.3 % as a rule, for a fraction of fit_run()'s work. INFINITY where one of them has no shape to search, or after an error.
  * Errors: as fit_run() */
 MUST_CHECK enum status fit_estimate(const struct fit_context *context, const struct measurement *measurement,
-				    const struct fit_options *options, double *error);
+				    const struct fit_options *options, double *estimate, struct error *error);
 
 /* fit_eval - the metrics of a given model against a table, no fit. Of the options only criterion (but its gaf, which is the
  * model's) and threads are read, and checked. Errors as of fit_run(). */

@@ -225,7 +225,6 @@ static enum status step_along(struct run *r, struct state *s, bool (*move)(struc
 /* Takes up to `rounds` rounds of steps. */
 static enum status follow(struct run *r, struct state *s, int rounds)
 {
-	const atomic_bool *cancel = r->options->cancel;
 	const bool free_ior = r->options->fresnel != FRESNEL_NONE && isnan(r->options->ior);
 	enum status status = STATUS_OK;
 	double ior_step = 0.03, rim_step = 0.03;
@@ -233,7 +232,7 @@ static enum status follow(struct run *r, struct state *s, int rounds)
 	for (int round = 0; round < rounds && status == STATUS_OK; round++) {
 		const double before = s->linear.error;
 
-		if (cancel && atomic_load_explicit(cancel, memory_order_relaxed))
+		if (fit_cancelled(r->options))
 			return STATUS_INTERRUPTED;
 		status = step_nodes(r, s);
 		if (status == STATUS_OK && free_ior)

@@ -37,12 +37,11 @@ static bool is_done(struct local *l)
 static double evaluate(unsigned dims, const double *x, double *gradient, void *data)
 {
 	struct local *l = data;
-	const atomic_bool *cancel = l->objective->options->cancel;
 	const struct shape shape = space_shape(l->space, x);
 	struct linear linear;
 
 	(void)gradient;
-	if (cancel && atomic_load_explicit(cancel, memory_order_relaxed))
+	if (fit_cancelled(l->objective->options))
 		nlopt_force_stop(l->opt);
 	const double error = objective_eval(l->objective, &shape, INNER * l->how->tolerance, false, &linear);
 

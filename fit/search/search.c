@@ -78,7 +78,7 @@ static void note(void *user, const struct shape *shape, const struct linear *lin
 
 static bool cancelled(const struct search *s)
 {
-	return s->options->cancel && atomic_load_explicit(s->options->cancel, memory_order_relaxed);
+	return fit_cancelled(s->options);
 }
 
 static long grid_size(const struct search *s, int from)

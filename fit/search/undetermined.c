@@ -220,14 +220,13 @@ static enum status reaches(struct inquiry *q, const struct pin *pin, bool *reach
 /* Whether E is in reach at all the values of a parameter. */
 static enum status reaches_all(struct inquiry *q, struct pin pin, const double value[], int n, bool *reached)
 {
-	const atomic_bool *cancel = q->options->cancel;
 	enum status status = STATUS_OK;
 
 	*reached = true;
 	for (int i = 0; i < n && *reached && status == STATUS_OK; i++) {
 		pin.value = value[i];
 		status = reaches(q, &pin, reached);
-		if (cancel && atomic_load_explicit(cancel, memory_order_relaxed))
+		if (fit_cancelled(q->options))
 			status = STATUS_INTERRUPTED;
 	}
 	return status;

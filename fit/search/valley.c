@@ -32,7 +32,6 @@ static enum status refit(const struct walk *w, const struct space_point *from, d
 static enum status follow(const struct walk *w, double least, struct space_point *place)
 {
 	const struct space *s = w->space;
-	const atomic_bool *cancel = w->objective->options->cancel;
 	enum status status = STATUS_OK;
 	int steps = 0;
 
@@ -40,7 +39,7 @@ static enum status follow(const struct walk *w, double least, struct space_point
 		const double value = least + (space_value(s, w->d, place->x[w->d]) - least) * exp(step);
 		struct space_point next;
 
-		if (cancel && atomic_load_explicit(cancel, memory_order_relaxed))
+		if (fit_cancelled(w->objective->options))
 			break;
 		status = refit(w, place, fmin(fmax(value, s->lowest[w->d]), s->highest[w->d]), &next);
 		if (status == STATUS_OK && next.error < place->error) {

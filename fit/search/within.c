@@ -186,7 +186,7 @@ static int take_whole(struct selection *s, const struct fit_result *whole, doubl
 static enum status try_lambert(struct selection *s, double percent, bool *chosen, struct error *error)
 {
 	double best;
-	enum status status = fit_estimate(s->context, s->measurement, s->options, &best);
+	enum status status = fit_estimate(s->context, s->measurement, s->options, &best, NULL);
 	*chosen = false;
 	if (status)
 		return error_set(error, status, "%s", status_str(status));

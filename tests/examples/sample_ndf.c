@@ -4,26 +4,36 @@
 #include <stdfit/stdfit.h>
 #include <stdio.h>
 
-enum { SIDE = 200 };
+enum { SIDE = 200, COUNT = SIDE * SIDE };
+
+static double u[2 * COUNT], normal[3 * COUNT], pdf[COUNT], weight[COUNT];
 
 int main(void)
 {
-	const struct vec3 normal = {0, 0, 1}, wi = {0.6, 0, 0.8};
-	struct cook_torrance mirror = {.fresnel = FRESNEL_NONE, .ks = {1, 1, 1}};
-	struct ndf *ndf = &mirror.ndf;
-	double sum = 0, exact;
+	const double up[3] = {0, 0, 1}, wi[3] = {0.6, 0, 0.8};
+	struct stdfit_model mirror = stdfit_model_default();
+	double sum = 0, exact[3], D, lambda, G1;
+	stdfit_ndf *ndf;
 
-	if (ndf_init(ndf, ndf_find("std"), 0.3, 0.3, 1.8)) /* sigma_x, sigma_y, gamma */
+	mirror.fresnel = "none";
+	if (stdfit_ndf_new(&ndf, "std", 0.3, 0.3, 1.8, NULL, NULL) || /* sigma_x, sigma_y, gamma */
+	    stdfit_ndf_evaluate(ndf, STDFIT_D, 1, up, &D, NULL) ||
+	    stdfit_ndf_evaluate(ndf, STDFIT_LAMBDA, 1, wi, &lambda, NULL) ||
+	    stdfit_ndf_evaluate(ndf, STDFIT_G1, 1, wi, &G1, NULL))
 		return 1;
-	printf("D %.6f, Lambda %.6f, G1 %.6f\n", ndf_D(ndf, normal), ndf_lambda(ndf, wi), ndf_G1(ndf, wi));
-	for (int i = 0; i < SIDE * SIDE; i++) {
-		const double u = (i / SIDE + 0.5) / SIDE, v = (i % SIDE + 0.5) / SIDE; /* NOLINT: whole steps */
-		const struct vec3 m = vndf_sample(ndf, wi, u, v);
-
-		sum += vndf_weight(ndf, GAF_UNCORRELATED, wi, m, vndf_pdf(ndf, wi, m));
+	printf("D %.6f, Lambda %.6f, G1 %.6f\n", D, lambda, G1);
+	for (int i = 0; i < COUNT; i++) {
+		u[2 * i] = (i / SIDE + 0.5) / SIDE; /* NOLINT: whole steps */
+		u[2 * i + 1] = (i % SIDE + 0.5) / SIDE;
 	}
-	if (energy_lobe(&mirror, wi.z, &exact))
+	if (stdfit_ndf_sample_visible(ndf, wi, COUNT, u, normal, NULL) ||
+	    stdfit_ndf_pdf_visible(ndf, wi, COUNT, normal, pdf, NULL) ||
+	    stdfit_ndf_weight(ndf, NULL, wi, COUNT, normal, pdf, weight, NULL) ||
+	    stdfit_model_albedo(&mirror, ndf, wi[2], exact, NULL))
 		return 1;
-	printf("albedo %.4f, by quadrature %.4f\n", sum / (SIDE * SIDE), exact);
+	for (int i = 0; i < COUNT; i++)
+		sum += weight[i];
+	printf("albedo %.4f, by quadrature %.4f\n", sum / COUNT, exact[0]);
+	stdfit_ndf_free(ndf);
 	return 0;
 }

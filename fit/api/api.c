@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/api/api.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+_Static_assert((int)STDFIT_OK == STATUS_OK && (int)STDFIT_DOMAIN == STATUS_DOMAIN &&
+		       (int)STDFIT_NO_MEMORY == STATUS_NO_MEMORY && (int)STDFIT_IO == STATUS_IO &&
+		       (int)STDFIT_FORMAT == STATUS_FORMAT && (int)STDFIT_NO_DATA == STATUS_NO_DATA &&
+		       (int)STDFIT_UNSUPPORTED == STATUS_UNSUPPORTED && (int)STDFIT_INTERRUPTED == STATUS_INTERRUPTED,
+	       "the public status is the internal one");
+
+const char *stdfit_version(void)
+{
+	return STDFIT_VERSION;
+}
+
+const char *stdfit_status_text(int status)
+{
+	return status < STDFIT_OK || status > STDFIT_INTERRUPTED ? "unknown status" : status_str((enum status)status);
+}
+
+enum stdfit_status api_fail(struct stdfit_error *error, enum status status, const char *format, ...)
+{
+	if (error) {
+		va_list list;
+
+		va_start(list, format);
+		vsnprintf(error->text, sizeof error->text, format, list);
+		va_end(list);
+	}
+	return (enum stdfit_status)status;
+}
+
+enum stdfit_status api_end(struct stdfit_error *error, enum status status, const struct error *why)
+{
+	if (status == STATUS_OK)
+		return STDFIT_OK;
+	return api_fail(error, status, "%s", why && why->text[0] ? why->text : status_str(status));
+}
+
+static enum stdfit_status unknown(const char *what, const char *name, struct stdfit_error *error)
+{
+	return api_fail(error, STATUS_DOMAIN, "%s: there is none called '%.100s'", what, name);
+}
+
+enum stdfit_status api_gaf(const char *name, enum gaf *gaf, struct stdfit_error *error)
+{
+	*gaf = GAF_UNCORRELATED;
+	return name && gaf_find(name, gaf) != STATUS_OK ? unknown("gaf", name, error) : STDFIT_OK;
+}
+
+enum stdfit_status api_fresnel(const char *name, enum fresnel *fresnel, struct stdfit_error *error)
+{
+	*fresnel = FRESNEL_DIELECTRIC;
+	return name && fresnel_find(name, fresnel) != STATUS_OK ? unknown("fresnel", name, error) : STDFIT_OK;
+}
+
+enum stdfit_status api_bins(const char *name, enum bins *bins, struct stdfit_error *error)
+{
+	*bins = BINS_NODE;
+	return name && bins_find(name, bins) != STATUS_OK ? unknown("bins", name, error) : STDFIT_OK;
+}
+
+enum stdfit_status api_directions(const char *what, size_t n, const double *directions, struct stdfit_error *error)
+{
+	if (!directions && n > 0)
+		return api_fail(error, STATUS_DOMAIN, "%s is NULL", what);
+	for (size_t i = 0; i < n; i++)
+		if (!(fabs(vec3_length(api_vec(directions + 3 * i)) - 1) <= 1e-6))
+			return api_fail(error, STATUS_DOMAIN, "%s number %zu is no unit vector", what, i);
+	return STDFIT_OK;
+}

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* api - what the files behind the public header share. */
+#ifndef API_H
+#define API_H
+
+#include "fit/search/fit.h"
+#include "fit/stdfit.h"
+#include "src/ellipsoid.h"
+#include "src/pwl.h"
+
+struct stdfit_ndf {
+	enum { API_NDF_CLASS, API_NDF_PIECEWISE, API_NDF_ELLIPSOID } kind;
+	struct ndf ndf; /* of a class, and of an isotropic piecewise one */
+	bool anisotropic_table;
+	struct pwl pwl;
+	struct ellipsoid ellipsoid;
+};
+
+struct stdfit_measurement {
+	struct measurement grid;
+};
+
+/* api_fail - a failure with its text. */
+enum stdfit_status api_fail(struct stdfit_error *error, enum status status, const char *format, ...)
+	__attribute__((format(printf, 3, 4)));
+/* api_end - the public form of an internal end; `why` may be empty. */
+enum stdfit_status api_end(struct stdfit_error *error, enum status status, const struct error *why);
+
+/* api_names - G and F of their names. */
+MUST_CHECK enum stdfit_status api_gaf(const char *name, enum gaf *gaf, struct stdfit_error *error);
+MUST_CHECK enum stdfit_status api_fresnel(const char *name, enum fresnel *fresnel, struct stdfit_error *error);
+MUST_CHECK enum stdfit_status api_bins(const char *name, enum bins *bins, struct stdfit_error *error);
+
+/* api_directions - whether n directions are there and unit vectors. */
+MUST_CHECK enum stdfit_status api_directions(const char *what, size_t n, const double *directions,
+					     struct stdfit_error *error);
+/* api_class_ndf - the NDF as the models know it; STDFIT_UNSUPPORTED for those that they do not. */
+MUST_CHECK enum stdfit_status api_class_ndf(const struct stdfit_ndf *ndf, const struct ndf **inner,
+					    struct stdfit_error *error);
+/* api_model - a model, checked. */
+MUST_CHECK enum stdfit_status api_model(const struct stdfit_model *model, const struct stdfit_ndf *ndf,
+					struct cook_torrance *inner, struct stdfit_error *error);
+
+static inline struct vec3 api_vec(const double *d)
+{
+	return (struct vec3){d[0], d[1], d[2]};
+}
+
+#endif

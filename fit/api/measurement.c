@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "data_readers/merl.h"
+#include "fit/api/api.h"
+#include "fit/error/model_table.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* A measurement to be filled in by the caller. */
+static enum stdfit_status allocate(stdfit_measurement **measurement, struct stdfit_error *error)
+{
+	if (!measurement)
+		return api_fail(error, STATUS_DOMAIN, "measurement is NULL");
+	*measurement = calloc(1, sizeof **measurement);
+	return *measurement ? STDFIT_OK : api_end(error, STATUS_NO_MEMORY, NULL);
+}
+
+static enum stdfit_status give_up(stdfit_measurement **measurement, enum stdfit_status status)
+{
+	if (status != STDFIT_OK) {
+		free(*measurement);
+		*measurement = NULL;
+	}
+	return status;
+}
+
+static enum stdfit_status check_n_phi_d(int n_phi_d, struct stdfit_error *error)
+{
+	return n_phi_d == 180 || n_phi_d == 360
+		       ? STDFIT_OK
+		       : api_fail(error, STATUS_DOMAIN, "expected n_phi_d 180 or 360, found %d", n_phi_d);
+}
+
+enum stdfit_status stdfit_measurement_read(stdfit_measurement **measurement, const char *path,
+					   struct stdfit_error *error)
+{
+	struct error why = {""};
+	enum stdfit_status status = allocate(measurement, error);
+
+	if (status != STDFIT_OK)
+		return status;
+	if (!path)
+		status = api_fail(error, STATUS_DOMAIN, "path is NULL");
+	else
+		status = api_end(error, merl_read(path, 1, &(*measurement)->grid, &why), &why);
+	return give_up(measurement, status);
+}
+
+enum stdfit_status stdfit_measurement_write(const stdfit_measurement *measurement, const char *path,
+					    struct stdfit_error *error)
+{
+	struct error why = {""};
+
+	if (!measurement || !path)
+		return api_fail(error, STATUS_DOMAIN, "measurement or path is NULL");
+	return api_end(error, merl_write(path, &measurement->grid, &why), &why);
+}
+
+/* One entry of three channels; what a float cannot hold counts as not finite, as in files. */
+static void set_entry(struct measurement *grid, size_t at, const double *value, size_t plane)
+{
+	bool finite = true, negative = false;
+
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		finite = finite && fabs(value[(size_t)c * plane + at]) <= FLT_MAX;
+		negative = negative || value[(size_t)c * plane + at] < 0;
+	}
+	grid->n_nonfinite += !finite;
+	grid->n_negative += finite && negative;
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		grid->value[c][at] = finite && !negative ? (float)value[(size_t)c * plane + at] : NAN;
+}
+
+enum stdfit_status stdfit_measurement_from_values(stdfit_measurement **measurement, int n_phi_d, const double *values,
+						  struct stdfit_error *error)
+{
+	enum stdfit_status status = allocate(measurement, error);
+
+	if (status != STDFIT_OK)
+		return status;
+	struct measurement *grid = &(*measurement)->grid;
+
+	status = check_n_phi_d(n_phi_d, error);
+	if (status == STDFIT_OK && !values)
+		status = api_fail(error, STATUS_DOMAIN, "values is NULL");
+	if (status == STDFIT_OK)
+		status = api_end(error, measurement_reserve(grid, n_phi_d), NULL);
+	const size_t plane = status == STDFIT_OK ? measurement_count(grid) : 0;
+
+	for (size_t at = 0; at < plane; at++)
+		set_entry(grid, at, values, plane);
+	return give_up(measurement, status);
+}
+
+enum stdfit_status stdfit_measurement_from_model(stdfit_measurement **measurement, const struct stdfit_model *model,
+						 const stdfit_ndf *ndf, const char *bins, int n_phi_d,
+						 struct stdfit_error *error)
+{
+	struct cook_torrance inner;
+	enum bins where;
+	enum stdfit_status status = allocate(measurement, error);
+
+	if (status != STDFIT_OK)
+		return status;
+	status = api_model(model, ndf, &inner, error);
+	if (status == STDFIT_OK)
+		status = api_bins(bins, &where, error);
+	if (status == STDFIT_OK)
+		status = check_n_phi_d(n_phi_d, error);
+	if (status == STDFIT_OK)
+		status = api_end(error, model_table(&inner, where, n_phi_d, 90, 1, &(*measurement)->grid), NULL);
+	return give_up(measurement, status);
+}
+
+enum stdfit_status stdfit_measurement_values(const stdfit_measurement *measurement, double *values,
+					     struct stdfit_error *error)
+{
+	if (!measurement || !values)
+		return api_fail(error, STATUS_DOMAIN, "measurement or values is NULL");
+	const size_t plane = measurement_count(&measurement->grid);
+
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		for (size_t at = 0; at < plane; at++)
+			values[(size_t)c * plane + at] = (double)measurement->grid.value[c][at];
+	return STDFIT_OK;
+}
+
+int stdfit_measurement_n_phi_d(const stdfit_measurement *measurement)
+{
+	return measurement ? measurement->grid.n_phi_d : 0;
+}
+
+void stdfit_measurement_free(stdfit_measurement *measurement)
+{
+	if (measurement)
+		measurement_free(&measurement->grid);
+	free(measurement);
+}

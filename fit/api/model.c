@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/api/api.h"
+#include "src/energy.h"
+#include <math.h>
+
+/* Beyond these nothing is promised of F, and of the fits' factors. */
+#define INDEX_MAX 1e75
+
+struct stdfit_model stdfit_model_default(void)
+{
+	return (struct stdfit_model){.n = 1.5, .ks = {1, 1, 1}};
+}
+
+static enum stdfit_status check_index(enum fresnel fresnel, double n, double k, struct stdfit_error *error)
+{
+	if (fresnel != FRESNEL_NONE && !(n > 0 && n <= INDEX_MAX))
+		return api_fail(error, STATUS_DOMAIN, "expected n in (0, %g], found %g", INDEX_MAX, n);
+	if (fresnel == FRESNEL_CONDUCTOR && !(k >= 0 && k <= INDEX_MAX))
+		return api_fail(error, STATUS_DOMAIN, "expected k in [0, %g], found %g", INDEX_MAX, k);
+	return STDFIT_OK;
+}
+
+enum stdfit_status api_model(const struct stdfit_model *model, const struct stdfit_ndf *ndf,
+			     struct cook_torrance *inner, struct stdfit_error *error)
+{
+	const struct ndf *distribution;
+	enum stdfit_status status = api_class_ndf(ndf, &distribution, error);
+
+	if (status != STDFIT_OK)
+		return status;
+	if (!model)
+		return api_fail(error, STATUS_DOMAIN, "model is NULL");
+	*inner = (struct cook_torrance){.ndf = *distribution, .n = model->n, .k = model->k};
+	status = api_gaf(model->gaf, &inner->gaf, error);
+	if (status == STDFIT_OK)
+		status = api_fresnel(model->fresnel, &inner->fresnel, error);
+	if (status == STDFIT_OK)
+		status = check_index(inner->fresnel, model->n, model->k, error);
+	for (int c = 0; c < 3 && status == STDFIT_OK; c++) {
+		inner->kd[c] = model->kd[c];
+		inner->ks[c] = model->ks[c];
+		if (!(model->kd[c] >= 0 && model->kd[c] <= FIT_FACTOR_MAX && model->ks[c] >= 0 &&
+		      model->ks[c] <= FIT_FACTOR_MAX))
+			status = api_fail(error, STATUS_DOMAIN, "expected kd and ks in [0, %g], found %g and %g",
+					  FIT_FACTOR_MAX, model->kd[c], model->ks[c]);
+	}
+	return status;
+}
+
+enum stdfit_status stdfit_model_evaluate(const struct stdfit_model *model, const stdfit_ndf *ndf, size_t n,
+					 const double *wi, const double *wo, double *f, struct stdfit_error *error)
+{
+	struct cook_torrance inner;
+	enum stdfit_status status = api_model(model, ndf, &inner, error);
+
+	if (status == STDFIT_OK)
+		status = api_directions("wi", n, wi, error);
+	if (status == STDFIT_OK)
+		status = api_directions("wo", n, wo, error);
+	if (status == STDFIT_OK && n > 0 && !f)
+		status = api_fail(error, STATUS_DOMAIN, "f is NULL");
+	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
+		cook_torrance_f(&inner, api_vec(wi + 3 * i), api_vec(wo + 3 * i), f + 3 * i);
+	return status;
+}
+
+enum stdfit_status stdfit_model_albedo(const struct stdfit_model *model, const stdfit_ndf *ndf, double cos_i,
+				       double albedo[3], struct stdfit_error *error)
+{
+	struct cook_torrance inner;
+	const enum stdfit_status status = api_model(model, ndf, &inner, error);
+
+	if (status != STDFIT_OK)
+		return status;
+	if (!albedo || !(cos_i >= 0 && cos_i <= 1))
+		return api_fail(error, STATUS_DOMAIN, "expected cos_i in [0, 1] and room for the albedo, found %g",
+				cos_i);
+	if (inner.ndf.sigma_x != inner.ndf.sigma_y)
+		return api_fail(error, STATUS_DOMAIN,
+				"the albedo is that of an isotropic NDF: sigma_x is %g and sigma_y %g",
+				inner.ndf.sigma_x, inner.ndf.sigma_y);
+	return api_end(error, energy_albedo(&inner, cos_i, albedo), NULL);
+}
+
+enum stdfit_status stdfit_fresnel(const char *fresnel, double cos_d, double n, double k, double *F,
+				  struct stdfit_error *error)
+{
+	enum fresnel form;
+	enum stdfit_status status = api_fresnel(fresnel, &form, error);
+
+	if (status == STDFIT_OK)
+		status = check_index(form, n, k, error);
+	if (status == STDFIT_OK && (!F || !(cos_d >= 0 && cos_d <= 1)))
+		status = api_fail(error, STATUS_DOMAIN, "expected cos_d in [0, 1] and room for F, found %g", cos_d);
+	if (status == STDFIT_OK)
+		*F = fresnel_F(form, cos_d, n, k);
+	return status;
+}

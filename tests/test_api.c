@@ -1,0 +1,302 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The public interface: what a stranger may get wrong ends with a status and a text, and normal use gives what the
+ * internals give. */
+#include "check.h"
+#include "fit/stdfit.h"
+#include "src/ndf.h"
+#include "src/vndf.h"
+#include <pthread.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static struct stdfit_error error;
+
+static void expect(enum stdfit_status got, enum stdfit_status want, const char *part)
+{
+	if (got != want || !strstr(error.text, part))
+		fail_msg("status %d, text '%s': expected %d, '%s'", (int)got, error.text, (int)want, part);
+	error.text[0] = '\0';
+}
+
+static stdfit_ndf *new_ndf(const char *name, double sigma, double gamma)
+{
+	stdfit_ndf *ndf = NULL;
+
+	expect(stdfit_ndf_new(&ndf, name, sigma, sigma, gamma, NULL, &error), STDFIT_OK, "");
+	return ndf;
+}
+
+static stdfit_measurement *new_measurement(int n_phi_d)
+{
+	stdfit_ndf *ndf = new_ndf("ggx", 0.25, 0);
+	struct stdfit_model model = stdfit_model_default();
+	stdfit_measurement *measurement = NULL;
+
+	model.kd[0] = model.kd[1] = model.kd[2] = 0.2;
+	expect(stdfit_measurement_from_model(&measurement, &model, ndf, NULL, n_phi_d, &error), STDFIT_OK, "");
+	stdfit_ndf_free(ndf);
+	return measurement;
+}
+
+static struct stdfit_options ggx_options(void)
+{
+	struct stdfit_options options = stdfit_options_default();
+
+	options.ndfs = "ggx";
+	options.threads = 1;
+	return options;
+}
+
+/* Fits with the first options on a context made for the second. */
+static enum stdfit_status fit_with(const struct stdfit_options *options, const struct stdfit_options *made_for,
+				   int n_measured, int n_context)
+{
+	stdfit_measurement *measurement = new_measurement(n_measured);
+	stdfit_context *context = NULL;
+	struct stdfit_result result = {0};
+
+	expect(stdfit_context_new(&context, n_context, made_for, &error), STDFIT_OK, "");
+	const enum stdfit_status status = stdfit_fit(context, measurement, options, 1, &result, &error);
+
+	assert_null(status == STDFIT_OK ? NULL : result.distribution);
+	stdfit_result_clear(&result);
+	stdfit_context_free(context);
+	stdfit_measurement_free(measurement);
+	return status;
+}
+
+static void a_context_refuses_what_it_was_not_made_for(void **state)
+{
+	struct stdfit_options options = ggx_options(), other = ggx_options();
+
+	(void)state;
+	expect(fit_with(&options, &options, 180, 360), STDFIT_DOMAIN, "360 phi_d: this one has 180");
+	expect(fit_with(&options, &options, 360, 180), STDFIT_DOMAIN, "180 phi_d: this one has 360");
+	other.gaf = "v-groove";
+	other.weight = "cosine";
+	expect(fit_with(&options, &other, 180, 180), STDFIT_DOMAIN, "v-groove, weight cosine");
+}
+
+static void options_out_of_range_are_refused(void **state)
+{
+	const struct stdfit_options good = ggx_options();
+	struct {
+		struct stdfit_options options;
+		const char *text;
+	} wrong[18];
+	int n = 0;
+
+	(void)state;
+#define WRONG(field, value, words)                                                                                     \
+	wrong[n].options = good;                                                                                       \
+	wrong[n].options.field = value;                                                                                \
+	wrong[n++].text = words
+	WRONG(threads, 0, "threads");
+	WRONG(threads, -1, "threads");
+	WRONG(ndfs, "", "there is none called ''");
+	WRONG(ndfs, "ggx,", "there is none called ''");
+	WRONG(ndfs, "phong", "'phong'");
+	WRONG(max_theta, -5, "max_theta");
+	WRONG(max_theta, NAN, "max_theta");
+	WRONG(starts, -1, "starts");
+	WRONG(blend, 2, "blend");
+	WRONG(sigma, 1e9, "sigma");
+	WRONG(n, 0, "ior");
+	WRONG(gamma, -1, "gamma");
+	WRONG(time_s, NAN, "time_s");
+	WRONG(algorithm, "magic", "'magic'");
+	WRONG(weight, "lead", "'lead'");
+	WRONG(gaf, "none", "'none'");
+	WRONG(lambda, "inexact", "'inexact'");
+	wrong[n].options = good;
+	wrong[n].options.diffuse = wrong[n].options.specular = 0;
+	wrong[n++].text = "nothing to fit";
+	assert_int_equal(n, 18);
+	for (int i = 0; i < n; i++) {
+		stdfit_context *context;
+
+		expect(fit_with(&wrong[i].options, &good, 180, 180), STDFIT_DOMAIN, wrong[i].text);
+		expect(stdfit_context_new(&context, 180, &wrong[i].options, &error), STDFIT_DOMAIN, wrong[i].text);
+		assert_null(context);
+	}
+}
+
+static void null_and_nonsense_are_refused(void **state)
+{
+	const struct stdfit_options options = ggx_options();
+	const double up[3] = {0, 0, 1}, long_one[3] = {0, 0, 2}, down[3] = {0, 0, -1}, u[2] = {0.5, 1};
+	const struct stdfit_model model = stdfit_model_default();
+	stdfit_ndf *ndf = new_ndf("std", 0.3, 1.8), *other = ndf, *skew = NULL;
+	double value[3];
+	struct stdfit_metrics metrics;
+	stdfit_context *context;
+	stdfit_measurement *measurement;
+
+	(void)state;
+	expect(stdfit_ndf_new(NULL, "std", 1, 1, 2, NULL, &error), STDFIT_DOMAIN, "NULL");
+	expect(stdfit_ndf_new(&other, NULL, 1, 1, 2, NULL, &error), STDFIT_DOMAIN, "(NULL)");
+	assert_null(other);
+	expect(stdfit_ndf_new(&other, "std", 1, 1, 1.5, NULL, &error), STDFIT_DOMAIN, "gamma 1.5");
+	expect(stdfit_ndf_new(&other, "ggx", 1, 1, 2, "rational", &error), STDFIT_UNSUPPORTED, "rational");
+	expect(stdfit_ndf_new_piecewise(&other, 2, NULL, up, NULL, &error), STDFIT_DOMAIN, "theta");
+	expect(stdfit_ndf_new_ellipsoid(&other, NULL, &error), STDFIT_DOMAIN, "A is NULL");
+	expect(stdfit_ndf_evaluate(NULL, STDFIT_D, 1, up, value, &error), STDFIT_DOMAIN, "NULL");
+	expect(stdfit_ndf_evaluate(ndf, STDFIT_D, 1, NULL, value, &error), STDFIT_DOMAIN, "NULL");
+	expect(stdfit_ndf_evaluate(ndf, STDFIT_D, 1, long_one, value, &error), STDFIT_DOMAIN, "unit vector");
+	expect(stdfit_ndf_evaluate(ndf, (enum stdfit_ndf_quantity)7, 1, up, value, &error), STDFIT_DOMAIN, "found 7");
+	expect(stdfit_ndf_sample(ndf, 1, u, value, &error), STDFIT_DOMAIN, "found 1");
+	expect(stdfit_ndf_pdf_visible(ndf, down, 1, up, value, &error), STDFIT_DOMAIN, "horizon");
+	expect(stdfit_ndf_moment(ndf, 0, 2, value, &error), STDFIT_DOMAIN, "order 2 does not exist");
+	expect(stdfit_model_evaluate(NULL, ndf, 1, up, up, value, &error), STDFIT_DOMAIN, "model is NULL");
+	expect(stdfit_model_albedo(&model, ndf, NAN, value, &error), STDFIT_DOMAIN, "cos_i");
+	expect(stdfit_ndf_new(&skew, "ggx", 0.1, 0.3, 2, NULL, &error), STDFIT_OK, "");
+	expect(stdfit_model_albedo(&model, skew, 0.5, value, &error), STDFIT_DOMAIN, "isotropic");
+	expect(stdfit_fresnel("metal", 1, 1, 0, value, &error), STDFIT_DOMAIN, "'metal'");
+	expect(stdfit_measurement_read(&measurement, NULL, &error), STDFIT_DOMAIN, "path");
+	expect(stdfit_measurement_read(&measurement, "no-such-file", &error), STDFIT_IO, "no-such-file");
+	assert_null(measurement);
+	expect(stdfit_measurement_from_values(&measurement, 90, up, &error), STDFIT_DOMAIN, "found 90");
+	expect(stdfit_measurement_values(NULL, value, &error), STDFIT_DOMAIN, "NULL");
+	expect(stdfit_context_new(&context, 180, NULL, &error), STDFIT_DOMAIN, "options is NULL");
+	expect(stdfit_context_new(&context, 0, &options, &error), STDFIT_DOMAIN, "found 0");
+	expect(stdfit_fit(NULL, NULL, &options, 1, NULL, &error), STDFIT_DOMAIN, "context is NULL");
+	expect(stdfit_estimate(NULL, NULL, &options, value, &error), STDFIT_DOMAIN, "context is NULL");
+	expect(stdfit_compare(NULL, &model, ndf, &options, &metrics, &error), STDFIT_DOMAIN, "measurement");
+	stdfit_ndf_free(NULL);
+	stdfit_measurement_free(NULL);
+	stdfit_context_free(NULL);
+	stdfit_result_clear(NULL);
+	assert_string_equal(stdfit_status_text(99), "unknown status");
+	assert_int_equal(stdfit_measurement_n_phi_d(NULL), 0);
+	stdfit_ndf_free(skew);
+	stdfit_ndf_free(ndf);
+}
+
+static void values_are_those_of_the_internals(void **state)
+{
+	const double m[6] = {0.6, 0, 0.8, 0, 0.28, 0.96}, u[2] = {0.3, 0.7};
+	stdfit_ndf *ndf = NULL;
+	struct ndf inner;
+	double value[2], normal[3];
+
+	(void)state;
+	expect(stdfit_ndf_new(&ndf, "std", 0.2, 0.4, 1.8, NULL, &error), STDFIT_OK, "");
+	assert_int_equal(ndf_init(&inner, ndf_find("std"), 0.2, 0.4, 1.8), STATUS_OK);
+	for (int q = STDFIT_D; q <= STDFIT_PDF; q++) {
+		double (*const of[])(const struct ndf *, struct vec3) = {ndf_D, ndf_lambda, ndf_G1, ndf_pdf};
+
+		expect(stdfit_ndf_evaluate(ndf, (enum stdfit_ndf_quantity)q, 2, m, value, &error), STDFIT_OK, "");
+		for (int i = 0; i < 2; i++)
+			check_rel(value[i], of[q](&inner, (struct vec3){m[3 * i], m[3 * i + 1], m[3 * i + 2]}), 0,
+				  "value");
+	}
+	expect(stdfit_ndf_sample_visible(ndf, m, 1, u, normal, &error), STDFIT_OK, "");
+	const struct vec3 want = vndf_sample(&inner, (struct vec3){0.6, 0, 0.8}, 0.3, 0.7);
+
+	assert_true(normal[0] == want.x && normal[1] == want.y && normal[2] == want.z);
+	stdfit_ndf_free(ndf);
+}
+
+static void step_counted(void *data, const struct stdfit_step *step)
+{
+	assert_string_equal(step->ndf, "ggx");
+	++*(int *)data;
+}
+
+static void *a_fit_recovers_its_parameters(void *data)
+{
+	struct stdfit_options options = ggx_options();
+	stdfit_measurement *measurement = new_measurement(180);
+	stdfit_context *context = NULL;
+	struct stdfit_result result;
+	struct stdfit_metrics metrics;
+	int steps = 0;
+
+	options.threads = *(const int *)data;
+	options.trace = step_counted;
+	options.trace_data = &steps;
+	expect(stdfit_context_new(&context, 180, &options, &error), STDFIT_OK, "");
+	expect(stdfit_fit(context, measurement, &options, 1, &result, &error), STDFIT_OK, "");
+	check_rel(result.sigma, 0.25, 1e-3, "sigma");
+	check_rel(result.model.n, 1.5, 1e-3, "n");
+	assert_string_equal(result.ndf, "ggx");
+	assert_true(isnan(result.gamma) && steps > 0);
+	expect(stdfit_compare(measurement, &result.model, result.distribution, &options, &metrics, &error), STDFIT_OK,
+	       "");
+	assert_true(metrics.error[0] == result.error);
+	stdfit_result_clear(&result);
+	stdfit_context_free(context);
+	stdfit_measurement_free(measurement);
+	return NULL;
+}
+
+/* 256 kB are the figure that the header states. */
+static void a_fit_on_a_small_stack_recovers_its_parameters(void **state)
+{
+	(void)state;
+	for (int threads = 1; threads <= 2; threads++) {
+		pthread_attr_t attributes;
+		pthread_t thread;
+
+		assert_int_equal(pthread_attr_init(&attributes), 0);
+		assert_int_equal(pthread_attr_setstacksize(&attributes, 256 * 1024), 0);
+		assert_int_equal(pthread_create(&thread, &attributes, a_fit_recovers_its_parameters, &threads), 0);
+		assert_int_equal(pthread_join(thread, NULL), 0);
+		pthread_attr_destroy(&attributes);
+	}
+}
+
+static void a_child_can_fit_on_one_thread(void **state)
+{
+	struct stdfit_options options = ggx_options();
+	int status;
+
+	(void)state;
+	options.threads = 2; /* so that the parent has a team of threads */
+	expect(fit_with(&options, &options, 180, 180), STDFIT_OK, "");
+	options.threads = 1;
+	const pid_t child = fork();
+
+	if (child == 0) {
+		alarm(60);
+		_exit(fit_with(&options, &options, 180, 180) == STDFIT_OK ? 0 : 1);
+	}
+	assert_true(child > 0 && waitpid(child, &status, 0) == child);
+	assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+static void the_flag_cancels(void **state)
+{
+	struct stdfit_options options = ggx_options();
+	volatile int cancel = 1;
+
+	(void)state;
+	options.cancel = &cancel;
+	expect(fit_with(&options, &options, 180, 180), STDFIT_INTERRUPTED, "interrupted");
+}
+
+static void an_algorithm_goes_by_its_name(void **state)
+{
+	struct stdfit_options options = ggx_options();
+
+	(void)state;
+	options.algorithm = "sbplx";
+	options.time_s = 0.2;
+	expect(fit_with(&options, &options, 180, 180), STDFIT_OK, "");
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_context_refuses_what_it_was_not_made_for),
+		cmocka_unit_test(options_out_of_range_are_refused),
+		cmocka_unit_test(null_and_nonsense_are_refused),
+		cmocka_unit_test(values_are_those_of_the_internals),
+		cmocka_unit_test(a_fit_on_a_small_stack_recovers_its_parameters),
+		cmocka_unit_test(a_child_can_fit_on_one_thread),
+		cmocka_unit_test(the_flag_cancels),
+		cmocka_unit_test(an_algorithm_goes_by_its_name),
+	};
+
+	return cmocka_run_group_tests_name("api", tests, NULL, NULL);
+}
