@@ -41,6 +41,11 @@ bool ndf_is_tabulated(const struct ndf_class *class)
 	return class->n_params == 0;
 }
 
+bool ndf_has_lambda_forms(const struct ndf_class *class)
+{
+	return class->student_t;
+}
+
 bool ndf_has_anisotropy(const struct ndf_class *class)
 {
 	return !class->isotropic;

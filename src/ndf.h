@@ -79,6 +79,9 @@ const char *ndf_name(const struct ndf_class *ndf_class);
 bool ndf_has_gamma(const struct ndf_class *ndf_class);
 /* ndf_is_tabulated - whether the class has no parameters but a table: ndf_init() refuses it. */
 bool ndf_is_tabulated(const struct ndf_class *ndf_class);
+/* ndf_has_lambda_forms - whether the class has Student-t slopes of a free gamma, and with them the forms of Lambda of
+ * lambda_form.h. */
+bool ndf_has_lambda_forms(const struct ndf_class *ndf_class);
 /* ndf_has_anisotropy - whether sigma_x and sigma_y may differ. */
 bool ndf_has_anisotropy(const struct ndf_class *ndf_class);
 /* ndf_param_at - the named parameters of a class, index 0, 1, ...; NULL past the last. */

@@ -282,7 +282,7 @@ static enum status attempts(struct run *r)
 }
 
 /* With nothing to search, kd and ks are all there is to solve for. */
-static enum status look_once(struct run *r)
+static enum status evaluate_once(struct run *r)
 {
 	double nowhere[DIMS_MAX] = {0};
 
@@ -317,7 +317,7 @@ static enum status certify(struct run *r)
 
 static enum status run_alone(struct run *r)
 {
-	enum status status = r->dims > 0 ? attempts(r) : look_once(r);
+	enum status status = r->dims > 0 ? attempts(r) : evaluate_once(r);
 
 	if (cancelled(r))
 		status = STATUS_INTERRUPTED;

@@ -25,7 +25,7 @@ const char *algorithm_name(const struct algorithm *algorithm);
 MUST_CHECK enum status algorithm_find(const char *name, const struct algorithm **algorithm);
 
 /* algorithm_run - minimises E with options->algorithm (not NULL) for options->time_s seconds.
- * The first shape is looked at whatever the time; which one the last is depends on the machine, what comes before
+ * The first shape is evaluated whatever the time; which one the last is depends on the machine, what comes before
  * on options->seed only.
  * Returns: in *found the best of all it saw; limited unless nothing was left to search; starts are the local searches
  *          (1 for the others)

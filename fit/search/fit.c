@@ -57,21 +57,21 @@ static enum status check_arguments(const struct fit_context *context, const stru
 }
 
 /* One material under one set of options. */
-struct job {
+struct run {
 	const struct fit_context *context;
 	const struct measurement *measurement;
 	const struct fit_options *options;
 	struct multiresolution levels;
-	struct scan_minima *evidence; /* of the last search of each class, by its place in the table of distributions */
+	struct scan_minima *minima; /* of the last search of each class, by its index in the table of distributions */
 };
 
-static int place_of(const struct ndf_class *class)
+static int index_of(const struct ndf_class *class)
 {
-	int place = 0;
+	int index = 0;
 
-	while (ndf_at(place) != class)
-		place++;
-	return place;
+	while (ndf_at(index) != class)
+		index++;
+	return index;
 }
 
 static bool on_bound(double value, double low, double high)
@@ -107,9 +107,9 @@ static unsigned bounds_of(const struct fit_result *r, const struct fit_options *
 }
 
 /* Turns what a search found into a result; r->model.ndf is there already. */
-static enum status result_with_ndf(const struct job *job, const struct found *found, struct fit_result *r)
+static enum status result_with_ndf(const struct run *run, const struct found *found, struct fit_result *r)
 {
-	const struct fit_options *o = job->options;
+	const struct fit_options *o = run->options;
 	struct cook_torrance *m = &r->model;
 	enum status status;
 
@@ -123,7 +123,7 @@ static enum status result_with_ndf(const struct job *job, const struct found *fo
 		m->kd[c] = found->linear.kd[c];
 		m->ks[c] = found->linear.ks[c];
 	}
-	status = metrics_compute(&job->context->geometry, job->measurement, m, o->threads, &r->metrics);
+	status = metrics_compute(&run->context->geometry, run->measurement, m, o->threads, &r->metrics);
 	if (status != STATUS_OK)
 		return status;
 	r->error = r->metrics.error[o->criterion.weight];
@@ -137,14 +137,14 @@ static enum status result_with_ndf(const struct job *job, const struct found *fo
 	return STATUS_OK;
 }
 
-static enum status result_of(const struct job *job, const struct ndf_class *class, const struct found *found,
+static enum status result_of(const struct run *run, const struct ndf_class *class, const struct found *found,
 			     struct fit_result *r)
 {
 	enum status status;
 
 	*r = (struct fit_result){.pwl = NULL};
-	status = shape_ndf(&found->shape, class, job->options->lambda, &r->model.ndf);
-	return status == STATUS_OK ? result_with_ndf(job, found, r) : status;
+	status = shape_ndf(&found->shape, class, run->options->lambda, &r->model.ndf);
+	return status == STATUS_OK ? result_with_ndf(run, found, r) : status;
 }
 
 /* Nested distributions: at these values of gamma a class is a simpler one, of the same sigma. */
@@ -156,9 +156,9 @@ static const struct nesting {
 } nestings[] = {{"std", {2, INFINITY}}, {"hyper-cauchy", {2, NAN}}, {"gtr", {2, NAN}}};
 
 /* The other algorithms go without. So do the other forms of Lambda: GGX and Beckmann have theirs. */
-static const struct nesting *nesting_of(const struct job *job, const struct ndf_class *class)
+static const struct nesting *nesting_of(const struct run *run, const struct ndf_class *class)
 {
-	const struct fit_options *o = job->options;
+	const struct fit_options *o = run->options;
 
 	for (size_t n = 0; n < sizeof nestings / sizeof *nestings; n++)
 		if (class == ndf_find(nestings[n].class) && isnan(o->gamma) && o->specular && !o->algorithm &&
@@ -168,7 +168,7 @@ static const struct nesting *nesting_of(const struct job *job, const struct ndf_
 }
 
 /* Fits that others build on, made when first wanted and shared by all that want them: those of the nested models, and
- * those of each class by its place in the table of distributions. */
+ * those of each class by its index in the table of distributions. */
 struct nested {
 	bool done[NESTED], class_done[FIT_NDFS_MAX];
 	struct fit_result result[NESTED], of_class[FIT_NDFS_MAX];
@@ -180,37 +180,37 @@ struct memory {
 	struct scan_minima minima[FIT_NDFS_MAX];
 };
 
-static enum status fit_alone(const struct job *job, const struct ndf_class *class, struct fit_result *r)
+static enum status fit_alone(const struct run *run, const struct ndf_class *class, struct fit_result *r)
 {
 	const double begin = search_clock();
 	struct found found;
-	enum status status = job->options->algorithm
-				     ? algorithm_run(&job->levels.table[SEARCH_LEVELS - 1], job->options, class, &found)
-				     : search_run(&job->levels, job->options, class, &found);
+	enum status status = run->options->algorithm
+				     ? algorithm_run(&run->levels.table[SEARCH_LEVELS - 1], run->options, class, &found)
+				     : search_run(&run->levels, run->options, class, &found);
 
 	if (status == STATUS_OK)
-		status = result_of(job, class, &found, r);
-	if (status == STATUS_OK && !job->options->algorithm)
-		job->evidence[place_of(class)] = found.evidence;
+		status = result_of(run, class, &found, r);
+	if (status == STATUS_OK && !run->options->algorithm)
+		run->minima[index_of(class)] = found.minima;
 	r->seconds = search_clock() - begin;
 	return status;
 }
 
-static enum status fit_nested(const struct job *job, struct nested *nested, int which)
+static enum status fit_nested(const struct run *run, struct nested *nested, int which)
 {
 	if (nested->done[which])
 		return STATUS_OK;
 	nested->done[which] = true;
-	return fit_alone(job, ndf_find(nested_name[which]), &nested->result[which]);
+	return fit_alone(run, ndf_find(nested_name[which]), &nested->result[which]);
 }
 
 /* Those within a class, at once where there are threads for it: two fits on a thread each wait less for one another
  * than two threads within one. */
-static enum status fit_all_nested(const struct job *job, const struct nesting *nesting, struct nested *nested)
+static enum status fit_all_nested(const struct run *run, const struct nesting *nesting, struct nested *nested)
 {
-	const int outer = job->options->threads < NESTED ? job->options->threads : NESTED;
-	struct fit_options options = *job->options;
-	struct job own = *job;
+	const int outer = run->options->threads < NESTED ? run->options->threads : NESTED;
+	struct fit_options options = *run->options;
+	struct run own = *run;
 	enum status status[NESTED] = {STATUS_OK, STATUS_OK};
 
 	options.threads /= outer;
@@ -226,29 +226,29 @@ static enum status fit_all_nested(const struct job *job, const struct nesting *n
 }
 
 /* A result that takes the place of another goes on counting where that one stood. */
-static void keep_effort(struct fit_result *taken, const struct fit_result *before)
+static void keep_effort(struct fit_result *selected, const struct fit_result *before)
 {
-	taken->starts = before->starts;
-	taken->starts_agreeing = before->starts_agreeing;
-	taken->evaluations = before->evaluations;
-	taken->passes = before->passes;
-	taken->seconds = before->seconds;
+	selected->starts = before->starts;
+	selected->starts_agreeing = before->starts_agreeing;
+	selected->evaluations = before->evaluations;
+	selected->passes = before->passes;
+	selected->seconds = before->seconds;
 }
 
 /* Takes the nested optimum over when it is better than what the richer model found: a richer model never loses. */
-static enum status take_nested(const struct job *job, struct fit_result *r, const struct ndf_class *class,
+static enum status take_nested(const struct run *run, struct fit_result *r, const struct ndf_class *class,
 			       const struct fit_result *from, double gamma)
 {
-	struct fit_result taken = *from;
+	struct fit_result selected = *from;
 	const double sigma = from->model.ndf.sigma_x;
 	enum status status;
 
 	if (from->error >= r->error)
 		return STATUS_OK;
-	keep_effort(&taken, r);
-	*r = taken;
+	keep_effort(&selected, r);
+	*r = selected;
 	status = ndf_init(&r->model.ndf, class, sigma, sigma, gamma);
-	r->at_bound = bounds_of(r, job->options);
+	r->at_bound = bounds_of(r, run->options);
 	return status;
 }
 
@@ -278,12 +278,12 @@ static void trace_further(struct fit_options *options, struct further *further)
 }
 
 /* Goes down from the nested optima too. */
-static enum status start_from_nested(const struct job *job, const struct ndf_class *class,
+static enum status start_from_nested(const struct run *run, const struct ndf_class *class,
 				     const struct nesting *nesting, const struct nested *nested, struct fit_result *r)
 {
 	const double begin = search_clock();
-	struct further further = {job->options, r->evaluations, r->seconds};
-	struct fit_options options = *job->options;
+	struct further further = {run->options, r->evaluations, r->seconds};
+	struct fit_options options = *run->options;
 	struct shape given[NESTED];
 	struct fit_result other;
 	struct found found;
@@ -299,9 +299,9 @@ static enum status start_from_nested(const struct job *job, const struct ndf_cla
 	const struct shape known = {r->model.ndf.sigma_x, r->model.ndf.gamma, r->model.n, r->model.k};
 
 	trace_further(&options, &further);
-	status = search_from(&job->levels, &options, class, given, count, &known, r->error, &found);
+	status = search_from(&run->levels, &options, class, given, count, &known, r->error, &found);
 	if (status == STATUS_OK && found.linear.error < r->error) {
-		status = result_of(job, class, &found, &other);
+		status = result_of(run, class, &found, &other);
 		if (status == STATUS_OK && other.error < r->error) {
 			keep_effort(&other, r);
 			*r = other;
@@ -317,31 +317,31 @@ static enum status start_from_nested(const struct job *job, const struct ndf_cla
 
 /* The rich model first, and alone on all threads: who asks for it waits least. Then the nested ones, as starts and as
  * candidates. */
-static enum status fit_with_nested(const struct job *job, const struct ndf_class *class, const struct nesting *nesting,
+static enum status fit_with_nested(const struct run *run, const struct ndf_class *class, const struct nesting *nesting,
 				   struct nested *nested, struct fit_result *r)
 {
-	enum status status = fit_alone(job, class, r);
+	enum status status = fit_alone(run, class, r);
 
 	if (status == STATUS_OK)
-		status = fit_all_nested(job, nesting, nested);
+		status = fit_all_nested(run, nesting, nested);
 	if (status == STATUS_OK)
-		status = start_from_nested(job, class, nesting, nested, r);
+		status = start_from_nested(run, class, nesting, nested, r);
 	for (int n = 0; n < NESTED && status == STATUS_OK; n++)
 		if (!isnan(nesting->gamma[n]))
-			status = take_nested(job, r, class, &nested->result[n], nesting->gamma[n]);
+			status = take_nested(run, r, class, &nested->result[n], nesting->gamma[n]);
 	return status;
 }
 
-/* A form of Lambda that exists at some gammas only: each of them is fitted, and the best taken. */
-static enum status fit_each_gamma(const struct job *job, const struct ndf_class *class, struct fit_result *r)
+/* A form of Lambda that exists at some gammas only: each of them is fitted, and the best selected. */
+static enum status fit_each_gamma(const struct run *run, const struct ndf_class *class, struct fit_result *r)
 {
-	struct fit_options options = *job->options;
-	struct job own = *job;
+	struct fit_options options = *run->options;
+	struct run own = *run;
 	enum status status = STATUS_OK;
-	struct scan_minima *evidence = &job->evidence[place_of(class)], best_evidence = *evidence;
+	struct scan_minima *minima = &run->minima[index_of(class)], best_minima = *minima;
 	struct fit_result one = {0};
 	struct ndf ndf;
-	struct further sum = {.options = job->options};
+	struct further sum = {.options = run->options};
 	long passes = 0;
 	double worst = 0;
 
@@ -359,11 +359,11 @@ static enum status fit_each_gamma(const struct job *job, const struct ndf_class 
 		sum.seconds += one.seconds;
 		if (status == STATUS_OK && one.error < r->error) {
 			*r = one;
-			best_evidence = *evidence;
+			best_minima = *minima;
 		}
 		worst = fmax(worst, one.error);
 	}
-	*evidence = best_evidence;
+	*minima = best_minima;
 	if (worst <= undetermined_limit(r->error))
 		r->undetermined = BOUND_GAMMA;
 	r->evaluations = sum.evaluations;
@@ -372,19 +372,19 @@ static enum status fit_each_gamma(const struct job *job, const struct ndf_class 
 	return status;
 }
 
-static bool has_sparse_lambda(const struct job *job, const struct ndf_class *class)
+static bool has_sparse_lambda(const struct run *run, const struct ndf_class *class)
 {
-	const struct fit_options *o = job->options;
+	const struct fit_options *o = run->options;
 
 	return (o->lambda == LAMBDA_INTEGER || o->lambda == LAMBDA_HALF_INTEGER) && o->specular && isnan(o->gamma) &&
-	       (class == ndf_find("std") || class == ndf_find("hyper-cauchy") || class == ndf_find("t-family"));
+	       ndf_has_lambda_forms(class);
 }
 
-static enum status fit_class(const struct job *job, const struct ndf_class *class, struct nested *nested,
+static enum status fit_class(const struct run *run, const struct ndf_class *class, struct nested *nested,
 			     struct fit_result *r);
 
 /* The optima of all the parametric NDFs, of which hyper-cauchy and t-family are STD again. */
-static enum status fit_starts(const struct job *job, struct nested *nested, struct cook_torrance starts[],
+static enum status fit_starts(const struct run *run, struct nested *nested, struct cook_torrance starts[],
 			      int *n_starts)
 {
 	static const char *const name[] = {"std", "ggx", "beckmann", "gtr", "low"};
@@ -392,19 +392,19 @@ static enum status fit_starts(const struct job *job, struct nested *nested, stru
 	struct fit_result r;
 
 	for (*n_starts = 0; *n_starts < 5 && status == STATUS_OK; (*n_starts)++) {
-		status = fit_class(job, ndf_find(name[*n_starts]), nested, &r);
+		status = fit_class(run, ndf_find(name[*n_starts]), nested, &r);
 		starts[*n_starts] = r.model;
 	}
 	return status;
 }
 
 /* The piecewise-linear NDF, from the parametric optima. */
-static enum status fit_free_form(const struct job *job, struct nested *nested, struct fit_result *r)
+static enum status fit_free_form(const struct run *run, struct nested *nested, struct fit_result *r)
 {
 	const double begin = search_clock();
 	struct memory *fresh = NULL;
-	struct fit_options exact = *job->options;
-	struct job own = *job;
+	struct fit_options exact = *run->options;
+	struct run own = *run;
 	struct cook_torrance starts[5];
 	struct found found;
 	int n_starts;
@@ -413,13 +413,13 @@ static enum status fit_free_form(const struct job *job, struct nested *nested, s
 	exact.lambda = LAMBDA_EXACT;
 	exact.gamma = NAN; /* of the starts: pl itself has none */
 	own.options = &exact;
-	const bool same = job->options->lambda == LAMBDA_EXACT && isnan(job->options->gamma);
+	const bool same = run->options->lambda == LAMBDA_EXACT && isnan(run->options->gamma);
 
 	if (!same) {
 		fresh = calloc(1, sizeof *fresh);
 		if (!fresh)
 			return STATUS_NO_MEMORY;
-		own.evidence = fresh->minima;
+		own.minima = fresh->minima;
 	}
 	status = fit_starts(&own, same ? nested : &fresh->nested, starts, &n_starts);
 	free(fresh);
@@ -428,7 +428,7 @@ static enum status fit_free_form(const struct job *job, struct nested *nested, s
 	*r = (struct fit_result){.pwl = calloc(1, sizeof *r->pwl)};
 	if (!r->pwl)
 		return STATUS_NO_MEMORY;
-	status = free_form_run(&job->levels, &exact, starts, n_starts, &found, r->pwl);
+	status = free_form_run(&run->levels, &exact, starts, n_starts, &found, r->pwl);
 	if (status == STATUS_OK) {
 		ndf_from_pwl(&r->model.ndf, r->pwl);
 		status = result_with_ndf(&own, &found, r);
@@ -447,47 +447,47 @@ void fit_result_free(struct fit_result *result)
 	result->pwl = NULL;
 }
 
-static enum status fit_anew(const struct job *job, const struct ndf_class *class, struct nested *nested,
+static enum status fit_anew(const struct run *run, const struct ndf_class *class, struct nested *nested,
 			    struct fit_result *r)
 {
-	const struct nesting *nesting = nesting_of(job, class);
+	const struct nesting *nesting = nesting_of(run, class);
 
 	if (ndf_is_tabulated(class))
-		return fit_free_form(job, nested, r);
+		return fit_free_form(run, nested, r);
 	if (nesting)
-		return fit_with_nested(job, class, nesting, nested, r);
-	if (has_sparse_lambda(job, class))
-		return fit_each_gamma(job, class, r);
+		return fit_with_nested(run, class, nesting, nested, r);
+	if (has_sparse_lambda(run, class))
+		return fit_each_gamma(run, class, r);
 	for (int n = 0; n < NESTED; n++)
 		if (class == ndf_find(nested_name[n])) {
-			const enum status status = fit_nested(job, nested, n);
+			const enum status status = fit_nested(run, nested, n);
 
 			*r = nested->result[n];
 			return status;
 		}
-	return fit_alone(job, class, r);
+	return fit_alone(run, class, r);
 }
 
-static enum status fit_class(const struct job *job, const struct ndf_class *class, struct nested *nested,
+static enum status fit_class(const struct run *run, const struct ndf_class *class, struct nested *nested,
 			     struct fit_result *r)
 {
 	enum status status = STATUS_OK;
-	const int place = place_of(class);
+	const int index = index_of(class);
 
-	if (!nested->class_done[place]) {
-		status = fit_anew(job, class, nested, &nested->of_class[place]);
+	if (!nested->class_done[index]) {
+		status = fit_anew(run, class, nested, &nested->of_class[index]);
 		/* A table belongs to one result only. */
-		nested->class_done[place] = status == STATUS_OK && !ndf_is_tabulated(class);
+		nested->class_done[index] = status == STATUS_OK && !ndf_is_tabulated(class);
 	}
-	*r = nested->of_class[place];
+	*r = nested->of_class[index];
 	return status;
 }
 
 /* BOUND_GAMMA where the fits of the nested models have shown already that gamma is determined. */
-static unsigned gamma_settled(const struct job *job, const struct ndf_class *class, const struct nested *nested,
+static unsigned gamma_settled(const struct run *run, const struct ndf_class *class, const struct nested *nested,
 			      const struct fit_result *r)
 {
-	const struct nesting *nesting = nesting_of(job, class);
+	const struct nesting *nesting = nesting_of(run, class);
 	const double limit = undetermined_limit(r->error);
 
 	for (int n = 0; nesting && n < NESTED; n++)
@@ -497,21 +497,21 @@ static unsigned gamma_settled(const struct job *job, const struct ndf_class *cla
 }
 
 /* Adds to a fit which of its parameters the data leave open. */
-static enum status find_undetermined(const struct job *job, const struct ndf_class *class, const struct nested *nested,
+static enum status find_undetermined(const struct run *run, const struct ndf_class *class, const struct nested *nested,
 				     struct fit_result *r)
 {
 	const double begin = search_clock();
 	const struct cook_torrance *m = &r->model;
-	const unsigned settled = gamma_settled(job, class, nested, r);
+	const unsigned settled = gamma_settled(run, class, nested, r);
 	const struct shape best = {m->ndf.sigma_x, m->ndf.gamma, m->n, m->k};
-	struct fit_options options = *job->options;
+	struct fit_options options = *run->options;
 	enum status status = STATUS_OK;
 	unsigned found = 0;
 
-	if (has_sparse_lambda(job, class))
+	if (has_sparse_lambda(run, class))
 		options.gamma = m->ndf.gamma; /* the other values have been fitted */
 	if (!options.algorithm)
-		status = undetermined_find(&job->levels, &options, class, &job->evidence[place_of(class)], &best,
+		status = undetermined_find(&run->levels, &options, class, &run->minima[index_of(class)], &best,
 					   r->error, settled, &found, &r->evaluations);
 	r->undetermined |= found;
 	r->seconds += search_clock() - begin;
@@ -521,7 +521,7 @@ static enum status find_undetermined(const struct job *job, const struct ndf_cla
 enum status fit_run(const struct fit_context *context, const struct measurement *measurement,
 		    const struct fit_options *options, struct fit_result *results, struct error *error)
 {
-	struct job job = {.context = context, .measurement = measurement, .options = options};
+	struct run run = {.context = context, .measurement = measurement, .options = options};
 	struct memory *memory = NULL;
 	struct sample_set full;
 	enum status status = check_arguments(context, measurement, options, error);
@@ -534,25 +534,25 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 	if (status == STATUS_NO_DATA)
 		return error_set(error, status, "no entry to fit: expected some valid ones that are not all zero");
 	if (status == STATUS_OK && options->algorithm)
-		job.levels.table[SEARCH_LEVELS - 1] = full; /* the others need no thinned tables */
+		run.levels.table[SEARCH_LEVELS - 1] = full; /* the others need no thinned tables */
 	else if (status == STATUS_OK)
-		status = multiresolution_init(&job.levels, &full);
+		status = multiresolution_init(&run.levels, &full);
 	if (status != STATUS_OK)
 		return error_set(error, status, "%s", status_str(status));
 	memory = calloc(1, sizeof *memory);
 	if (!memory)
 		status = STATUS_NO_MEMORY;
 	else
-		job.evidence = memory->minima;
+		run.minima = memory->minima;
 	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++) {
-		status = fit_class(&job, options->ndf[n], &memory->nested, &results[n]);
+		status = fit_class(&run, options->ndf[n], &memory->nested, &results[n]);
 		if (status == STATUS_OK)
-			status = find_undetermined(&job, options->ndf[n], &memory->nested, &results[n]);
+			status = find_undetermined(&run, options->ndf[n], &memory->nested, &results[n]);
 	}
 	for (int n = 0; n < options->n_ndf && status != STATUS_OK; n++)
 		fit_result_free(&results[n]);
 	free(memory);
-	multiresolution_free(&job.levels);
+	multiresolution_free(&run.levels);
 	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
 }
 

@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Looks that a patient search waits for something better, and those of its first model, taken twice. */
+/* Evaluations that a patient search waits for something better, and those of its first model, taken twice. */
 #define PATIENCE(dims) (2 * (dims) + 2)
-#define FIRST_LOOKS(dims) (4 * (dims) + 2)
+#define FIRST_EVALUATIONS(dims) (4 * (dims) + 2)
 /* Share of a search's tolerance to which kd and ks are solved for: what they miss is noise to the search, which then ends
  * further off. */
 #define INNER 0.03
@@ -13,22 +13,23 @@
 struct local {
 	const struct space *space;
 	struct objective *objective;
-	const struct local_how *how;
-	local_note *note;
+	const struct local_settings *settings;
+	local_report *report;
 	void *user;
 	struct space_point best;
 	double first; /* error of the place it began at */
-	int looks;
-	double least[PATIENCE(SPACE_DIMS)]; /* the least error as of each of the last looks, in turn */
+	int evaluations;
+	double least[PATIENCE(SPACE_DIMS)]; /* the least error as of each of the last evaluations, in turn */
 	nlopt_opt opt;
 };
 
-/* Whether the last looks have brought nothing that matters. */
+/* Whether the last evaluations have brought nothing that matters. */
 static bool is_done(struct local *l)
 {
-	const int dims = l->space->dims, look = l->looks++;
-	double *before = &l->least[look % PATIENCE(dims)];
-	const bool done = look >= FIRST_LOOKS(dims) && *before - l->best.error <= l->how->tolerance * *before;
+	const int dims = l->space->dims, evaluation = l->evaluations++;
+	double *before = &l->least[evaluation % PATIENCE(dims)];
+	const bool done =
+		evaluation >= FIRST_EVALUATIONS(dims) && *before - l->best.error <= l->settings->tolerance * *before;
 
 	*before = l->best.error;
 	return done;
@@ -43,10 +44,10 @@ static double evaluate(unsigned dims, const double *x, double *gradient, void *d
 	(void)gradient;
 	if (fit_cancelled(l->objective->options))
 		nlopt_force_stop(l->opt);
-	const double error = objective_eval(l->objective, &shape, INNER * l->how->tolerance, false, &linear);
+	const double error = objective_eval(l->objective, &shape, INNER * l->settings->tolerance, false, &linear);
 
-	if (l->note)
-		l->note(l->user, &shape, &linear);
+	if (l->report)
+		l->report(l->user, &shape, &linear);
 	if (isinf(l->best.error))
 		l->first = error;
 	if (error < l->best.error) {
@@ -54,29 +55,30 @@ static double evaluate(unsigned dims, const double *x, double *gradient, void *d
 		l->best.linear = linear;
 		memcpy(l->best.x, x, dims * sizeof *x);
 	}
-	if (l->how->patient && is_done(l))
+	if (l->settings->patient && is_done(l))
 		nlopt_force_stop(l->opt);
 	return error;
 }
 
-enum status local_descend(const struct space *space, struct objective *o, const struct local_how *how, local_note *note,
-			  void *user, struct space_point *place, bool *limited)
+enum status local_descend(const struct space *space, struct objective *o, const struct local_settings *settings,
+			  local_report *report, void *user, struct space_point *place, bool *limited)
 {
 	static const double spacing[] = {
 		[COORDINATE_SIGMA] = 0.35, [COORDINATE_GAMMA] = 1.0, [COORDINATE_IOR] = 0.1, [COORDINATE_K] = 0.15};
 	const unsigned dims = (unsigned)space->dims;
-	struct local local = {.space = space, .objective = o, .how = how, .note = note, .user = user, .best = *place};
+	struct local local = {
+		.space = space, .objective = o, .settings = settings, .report = report, .user = user, .best = *place};
 	double x[SPACE_DIMS], first[SPACE_DIMS], error;
 
 	objective_begin(o, &place->linear);
 	local.best.error = INFINITY;
 	memcpy(x, place->x, sizeof x);
-	nlopt_opt opt = nlopt_create(how->algorithm, dims);
+	nlopt_opt opt = nlopt_create(settings->algorithm, dims);
 
 	if (!opt)
 		return STATUS_NO_MEMORY;
 	for (unsigned d = 0; d < dims; d++) {
-		first[d] = how->step * spacing[space->coordinate[d]];
+		first[d] = settings->step * spacing[space->coordinate[d]];
 		if (x[d] + first[d] > space->hi[d])
 			first[d] = -first[d];
 	}
@@ -84,11 +86,11 @@ enum status local_descend(const struct space *space, struct objective *o, const 
 	nlopt_set_min_objective(opt, evaluate, &local);
 	nlopt_set_lower_bounds(opt, space->lo);
 	nlopt_set_upper_bounds(opt, space->hi);
-	nlopt_set_ftol_rel(opt, how->patient ? 0 : how->tolerance);
+	nlopt_set_ftol_rel(opt, settings->patient ? 0 : settings->tolerance);
 	nlopt_set_xtol_rel(opt, 1e-5);
-	nlopt_set_maxeval(opt, how->evaluations);
-	if (how->enough > 0)
-		nlopt_set_stopval(opt, how->enough);
+	nlopt_set_maxeval(opt, settings->evaluations);
+	if (settings->enough > 0)
+		nlopt_set_stopval(opt, settings->enough);
 	/* nlopt keeps the steps in memory that it asks for now; without them it would take others. */
 	nlopt_result result = nlopt_set_initial_step(opt, first);
 	if (result >= 0)

@@ -6,24 +6,24 @@
 #include "fit/search/space.h"
 #include <nlopt.h>
 
-/* struct local_how - how far it goes. */
-struct local_how {
+/* struct local_settings - how far it goes. */
+struct local_settings {
 	nlopt_algorithm algorithm;
 	double step;      /* first step, in about the spacings of the scan's grid */
 	double tolerance; /* of the error, relative */
 	int evaluations;  /* at most */
-	bool patient;     /* ends after some looks that lower the error by less than the tolerance together, not one */
-	double enough;    /* an error at which it may stop; 0: none */
+	bool patient; /* ends after some evaluations that lower the error by less than the tolerance together, not one */
+	double enough; /* an error at which it may stop; 0: none */
 };
 
-/* Told of every look, by the thread that searches; NULL: nobody. */
-typedef void local_note(void *user, const struct shape *shape, const struct linear *linear);
+/* Called at every evaluation, by the thread that searches; NULL: nobody. */
+typedef void local_report(void *user, const struct shape *shape, const struct linear *linear);
 
 /* local_descend - improves *place on the objective's table; place->error need not be set before.
- * Returns: the best place seen; *limited (if not NULL): stopped by how->evaluations while the error still fell
+ * Returns: the best place seen; *limited (if not NULL): stopped by settings->evaluations while the error still fell
  * Errors:  STATUS_NO_MEMORY. When the options' cancel is set it ends at once. */
 MUST_CHECK enum status local_descend(const struct space *space, struct objective *objective,
-				     const struct local_how *how, local_note *note, void *user,
+				     const struct local_settings *settings, local_report *report, void *user,
 				     struct space_point *place, bool *limited);
 
 #endif

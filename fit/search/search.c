@@ -57,7 +57,7 @@ static void begin_stage(struct search *s, const char *stage)
 }
 
 /* Counts an evaluation and tells the trace, if there is one, of a better shape. */
-static void note(void *user, const struct shape *shape, const struct linear *linear)
+static void report(void *user, const struct shape *shape, const struct linear *linear)
 {
 	struct search *s = user;
 	const double error = linear->error;
@@ -126,7 +126,7 @@ static enum status scan(struct search *s, struct space_point *grid)
 				const struct shape shape = space_shape(&s->space, grid[i].x);
 
 				grid[i].error = objective_eval(&o, &shape, 2e-3, false, &grid[i].linear);
-				note(s, &shape, &grid[i].linear);
+				report(s, &shape, &grid[i].linear);
 			}
 		}
 		if (mine == STATUS_OK) {
@@ -140,7 +140,7 @@ static enum status scan(struct search *s, struct space_point *grid)
 }
 
 /* Whether no neighbour in the grid is better; of a plateau only the first place counts. */
-static bool is_valley(const struct search *s, const struct space_point *grid, long index)
+static bool is_local_minimum(const struct search *s, const struct space_point *grid, long index)
 {
 	long step = 1;
 
@@ -165,37 +165,37 @@ static int by_error(const void *a, const void *b)
 	return memcmp(p->x, q->x, sizeof p->x);
 }
 
-enum { MOST_STARTS = 24 };
+enum { STARTS_MAX = 24 };
 
-/* The valleys of the grid, best first. Returns how many, at most MOST_STARTS. */
+/* The local minima of the grid, best first. Returns how many, at most STARTS_MAX. */
 static int pick_starts(const struct search *s, struct space_point *grid, struct space_point starts[])
 {
 	const long total = grid_size(s, 0);
-	long n_valleys = 0;
-	struct space_point *valley = malloc((size_t)total * sizeof *valley);
+	long n_minima = 0;
+	struct space_point *minimum = malloc((size_t)total * sizeof *minimum);
 
-	if (!valley)
+	if (!minimum)
 		return -1;
 	for (long n = 0; n < total; n++)
-		if (is_valley(s, grid, n))
-			valley[n_valleys++] = grid[n];
-	qsort(valley, (size_t)n_valleys, sizeof *valley, by_error);
-	const int count = n_valleys < MOST_STARTS ? (int)n_valleys : MOST_STARTS;
+		if (is_local_minimum(s, grid, n))
+			minimum[n_minima++] = grid[n];
+	qsort(minimum, (size_t)n_minima, sizeof *minimum, by_error);
+	const int count = n_minima < STARTS_MAX ? (int)n_minima : STARTS_MAX;
 
-	memcpy(starts, valley, (size_t)count * sizeof *starts);
-	free(valley);
+	memcpy(starts, minimum, (size_t)count * sizeof *starts);
+	free(minimum);
 	return count;
 }
 
 /* How a level is searched. */
 struct stage {
 	const char *name;
-	int most;      /* places that go on from the level before, at most */
-	double margin; /* those whose error is within this of the best, relative */
-	struct local_how how;
+	int max_points; /* places that go on from the level before, at most */
+	double margin;  /* those whose error is within this of the best, relative */
+	struct local_settings settings;
 };
 /* On the small tables, whose error is rugged, the simplex method is the one that gets through. What is left to do on the
- * full one is mostly a millionth of the error, on smooth ground: a quadratic model needs the fewest looks there. Where
+ * full one is mostly a millionth of the error, on smooth ground: a quadratic model needs the fewest evaluations there. Where
  * the valley is long and flat, it takes its time: the error has to be the least to 1e-6, whatever rounding does. */
 static const struct stage stages[SEARCH_LEVELS] = {
 	{"thin-1", 0, 0, {NLOPT_LN_SBPLX, 0.7, 2e-4, 150, false, 0}},
@@ -221,7 +221,7 @@ static int thin_out(const struct search *s, struct space_point *place, int count
 	qsort(place, (size_t)count, sizeof *place, by_error);
 	const double best = count > 0 ? fmin(place[0].error, s->known.error) : 0;
 
-	for (int n = 0; n < count && kept < stage->most; n++) {
+	for (int n = 0; n < count && kept < stage->max_points; n++) {
 		bool repeats = isfinite(s->known.error) && near(s, &place[n], &s->known);
 
 		for (int m = 0; m < kept && !repeats; m++)
@@ -244,7 +244,7 @@ static enum status refine_in_turn(struct search *s, int level, struct space_poin
 	if (status != STATUS_OK)
 		return status;
 	for (int n = 0; n < count && status == STATUS_OK; n++)
-		status = local_descend(&s->space, &o, &stages[level].how, note, s, &place[n], &found->limited);
+		status = local_descend(&s->space, &o, &stages[level].settings, report, s, &place[n], &found->limited);
 	if (level == SEARCH_LEVELS - 1)
 		found->passes += o.passes;
 	objective_free(&o);
@@ -266,7 +266,8 @@ static enum status refine_at_once(struct search *s, int level, struct space_poin
 #pragma omp for schedule(dynamic)
 		for (int n = 0; n < count; n++) {
 			if (mine == STATUS_OK && !cancelled(s))
-				mine = local_descend(&s->space, &o, &stages[level].how, note, s, &place[n], NULL);
+				mine = local_descend(&s->space, &o, &stages[level].settings, report, s, &place[n],
+						     NULL);
 		}
 		if (ready)
 			objective_free(&o);
@@ -310,7 +311,7 @@ static enum status follow_valley(struct search *s, struct space_point *best, str
 	if (status != STATUS_OK)
 		return status;
 	begin_stage(s, stages[0].name);
-	status = valley_follow(&s->space, &o, note, s, &place);
+	status = valley_follow(&s->space, &o, report, s, &place);
 	objective_free(&o);
 	begin_stage(s, stages[SEARCH_LEVELS - 1].name);
 	s->stage_best = stage_best;
@@ -345,7 +346,7 @@ static enum status finish_in_turn(struct search *s, struct space_point *place, i
 	found->shape = space_shape(&s->space, place[0].x);
 	objective_begin(&o, &place[0].linear);
 	objective_eval(&o, &found->shape, 1e-7, true, &found->linear);
-	note(s, &found->shape, &found->linear);
+	report(s, &found->shape, &found->linear);
 	found->passes += o.passes;
 	objective_free(&o);
 	return STATUS_OK;
@@ -396,7 +397,7 @@ static int agreeing(const struct search *s, const struct space_point place[], in
 }
 
 /* The best place of each slice of the grid. */
-static void note_slices(const struct search *s, const struct space_point *grid, struct scan_minima *evidence)
+static void note_slices(const struct search *s, const struct space_point *grid, struct scan_minima *minima)
 {
 	const long total = grid_size(s, 0);
 
@@ -405,9 +406,9 @@ static void note_slices(const struct search *s, const struct space_point *grid, 
 		const long step = grid_size(s, d + 1);
 
 		for (int i = 0; i < count; i++)
-			evidence->slice[d][i].error = INFINITY;
+			minima->slice[d][i].error = INFINITY;
 		for (long n = 0; n < total; n++) {
-			struct space_point *best = &evidence->slice[d][n / step % count];
+			struct space_point *best = &minima->slice[d][n / step % count];
 
 			if (grid[n].error < best->error)
 				*best = grid[n];
@@ -415,8 +416,8 @@ static void note_slices(const struct search *s, const struct space_point *grid, 
 	}
 }
 
-/* The places to start from: the valleys of a scan. Returns how many, 0 on failure. */
-static int first_places(struct search *s, struct space_point place[], struct scan_minima *evidence, enum status *status)
+/* The places to start from: the local minima of a scan. Returns how many, 0 on failure. */
+static int first_places(struct search *s, struct space_point place[], struct scan_minima *minima, enum status *status)
 {
 	struct space_point *grid = calloc((size_t)grid_size(s, 0), sizeof *grid);
 	int count = 0;
@@ -424,7 +425,7 @@ static int first_places(struct search *s, struct space_point place[], struct sca
 	begin_stage(s, "scan");
 	*status = grid ? scan(s, grid) : STATUS_NO_MEMORY;
 	if (*status == STATUS_OK) {
-		note_slices(s, grid, evidence);
+		note_slices(s, grid, minima);
 		count = pick_starts(s, grid, place);
 		if (count < 0)
 			*status = STATUS_NO_MEMORY;
@@ -473,13 +474,13 @@ enum status search_run(const struct multiresolution *levels, const struct fit_op
 		       const struct ndf_class *class, struct found *found)
 {
 	struct search s = new_search(levels, options, class);
-	struct space_point *place = calloc(MOST_STARTS + (size_t)options->starts + 1, sizeof *place);
+	struct space_point *place = calloc(STARTS_MAX + (size_t)options->starts + 1, sizeof *place);
 	enum status status = place ? STATUS_OK : STATUS_NO_MEMORY;
 	int count = 1;
 
 	*found = (struct found){.starts = 1, .starts_agreeing = s.space.dims == 0};
 	if (s.space.dims > 0 && status == STATUS_OK) {
-		count = first_places(&s, place, &found->evidence, &status);
+		count = first_places(&s, place, &found->minima, &status);
 		found->starts = count + options->starts;
 		count = descend(&s, place, count, found, &status);
 	}
@@ -494,10 +495,10 @@ enum status search_estimate(const struct multiresolution *levels, const struct f
 			    const struct ndf_class *class, double *error)
 {
 	struct search s = new_search(levels, options, class);
-	struct space_point place[MOST_STARTS + 1] = {{.error = 0}};
+	struct space_point place[STARTS_MAX + 1] = {{.error = 0}};
 	struct found found = {.starts = 0};
 	enum status status = STATUS_OK;
-	int count = s.space.dims > 0 ? first_places(&s, place, &found.evidence, &status) : 1;
+	int count = s.space.dims > 0 ? first_places(&s, place, &found.minima, &status) : 1;
 
 	for (int level = 0; level < 2 && status == STATUS_OK && s.space.dims > 0; level++) {
 		if (level > 0)

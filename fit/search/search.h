@@ -29,8 +29,8 @@ struct found {
 	int starts, starts_agreeing; /* local searches on the coarsest table; those within 0.1 % of the best there */
 	bool limited;                /* a limit on evaluations stopped the last local search */
 	long evaluations;
-	long passes;                 /* over the full table */
-	struct scan_minima evidence; /* search_run()'s, if it had anything to search */
+	long passes;               /* over the full table */
+	struct scan_minima minima; /* search_run()'s, if it had anything to search */
 };
 
 /* search_clock - seconds of a clock that only runs forward. */

@@ -49,13 +49,13 @@ static const struct axis scan_gamma = {{1e-4, 1e-3, 0.005, 0.015, 0.04, 0.1, 0.2
 static const struct axis scan_ior = {{1.03, 1.15, 1.35, 1.8, 3, 8, 60}, 7};
 static const struct axis scan_k = {{0, 0.5, 2, 6, 30}, 5};
 
-static struct axis gamma_axis(double least, double low)
+static struct axis gamma_axis(double least, double low, bool student_t)
 {
 	struct axis axis = scan_gamma;
 	const double first = low - least, ratio = pow(50 / first, 1.0 / (axis.count - 1));
 
 	for (int n = 0; n < axis.count; n++)
-		axis.value[n] = least + (least == 1.5 ? axis.value[n] : first * pow(ratio, n));
+		axis.value[n] = least + (student_t ? axis.value[n] : first * pow(ratio, n));
 	return axis;
 }
 
@@ -83,7 +83,7 @@ void space_init(struct space *s, const struct fit_options *o, const struct ndf_c
 		add_dim(s, COORDINATE_SIGMA, FIT_SIGMA_MIN, FIT_SIGMA_MAX, &scan_sigma);
 	if (ndf_has_gamma(class) && isnan(o->gamma)) {
 		const struct ndf_param *gamma = ndf_param_at(class, 1);
-		const struct axis axis = gamma_axis(gamma->min, gamma->search_min);
+		const struct axis axis = gamma_axis(gamma->min, gamma->search_min, ndf_has_lambda_forms(class));
 
 		s->least_gamma = gamma->min;
 		add_dim(s, COORDINATE_GAMMA, gamma->search_min, gamma->search_max, &axis);
@@ -121,7 +121,7 @@ void space_place(const struct space *s, const struct shape *shape, double x[])
 		x[d] = space_x(s, d, *parameter(&copy, s->coordinate[d]));
 }
 
-void space_pin(struct space *s, int d, double value)
+void space_fix(struct space *s, int d, double value)
 {
 	*parameter(&s->fixed, s->coordinate[d]) = value;
 	s->dims--;

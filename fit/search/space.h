@@ -46,7 +46,7 @@ void space_place(const struct space *space, const struct shape *shape, double x[
 /* space_x - dimension d's coordinate of a value of its parameter; space_value - the reverse. */
 double space_x(const struct space *space, int d, double value);
 double space_value(const struct space *space, int d, double x);
-/* space_pin - takes dimension d out: its parameter has this value from now on, gamma = inf included. */
-void space_pin(struct space *space, int d, double value);
+/* space_fix - takes dimension d out: its parameter has this value from now on, gamma = inf included. */
+void space_fix(struct space *space, int d, double value);
 
 #endif

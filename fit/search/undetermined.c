@@ -5,17 +5,17 @@
 #include <string.h>
 
 /* One parameter held at one value: dimension `dim` of the space, or, where that is negative, kd or ks of a channel. */
-struct pin {
+struct fixed {
 	int dim, channel;
 	bool specular;
 	double value;
 };
 
-struct inquiry {
+struct refit_context {
 	const struct multiresolution *levels;
 	const struct fit_options *options;
 	const struct ndf_class *class;
-	const struct scan_minima *evidence;
+	const struct scan_minima *minima;
 	struct space space;
 	struct shape best;
 	double error;   /* E of *best on the full table, */
@@ -23,7 +23,7 @@ struct inquiry {
 	double lambert; /* there too: E without a specular term */
 	/* And what each channel's part of E rises by, at the least of the shapes that come into question, with kd at its
 	 * upper end, and without specular term. */
-	double rise[2][MERL_CHANNELS], rise_of_best[2][MERL_CHANNELS]; /* and that at *best */
+	double increase[2][MERL_CHANNELS], increase_of_best[2][MERL_CHANNELS]; /* and that at *best */
 	_Atomic long evaluations;
 };
 
@@ -44,35 +44,35 @@ double undetermined_limit(double error)
 }
 
 /* How each level is searched; the coarsest one decides most. */
-static const struct local_how hows[SEARCH_LEVELS - 1] = {{NLOPT_LN_SBPLX, 0.7, 1e-3, 100, false, 0},
-							 {NLOPT_LN_SBPLX, 0.3, 1e-4, 40, false, 0},
-							 {NLOPT_LN_SBPLX, 0.2, 3e-5, 20, false, 0}};
+static const struct local_settings level_settings[SEARCH_LEVELS - 1] = {{NLOPT_LN_SBPLX, 0.7, 1e-3, 100, false, 0},
+									{NLOPT_LN_SBPLX, 0.3, 1e-4, 40, false, 0},
+									{NLOPT_LN_SBPLX, 0.2, 3e-5, 20, false, 0}};
 
-static enum status open_level(const struct inquiry *q, int level, struct objective *o)
+static enum status open_level(const struct refit_context *q, int level, struct objective *o)
 {
 	return objective_init(o, &q->levels->table[level], q->options, q->class, 1,
 			      level == SEARCH_LEVELS - 1 ? MASKING_FINE : MASKING_COARSE);
 }
 
-/* The space that a pin leaves; what it holds there, the objective has to be told. */
-static struct space pinned_space(const struct inquiry *q, const struct pin *pin)
+/* The space that a fixed parameter leaves; what it holds there, the objective has to be told. */
+static struct space fixed_space(const struct refit_context *q, const struct fixed *fixed)
 {
 	struct space space = q->space;
 
-	if (pin->dim >= 0)
-		space_pin(&space, pin->dim, pin->value);
+	if (fixed->dim >= 0)
+		space_fix(&space, fixed->dim, fixed->value);
 	return space;
 }
 
-static void pin_objective(struct objective *o, const struct pin *pin)
+static void fix_objective(struct objective *o, const struct fixed *fixed)
 {
-	if (pin->dim < 0)
-		objective_pin(o, pin->channel, pin->specular, pin->value);
+	if (fixed->dim < 0)
+		objective_pin(o, fixed->channel, fixed->specular, fixed->value);
 }
 
 static void count(void *user, const struct shape *shape, const struct linear *linear)
 {
-	struct inquiry *q = user;
+	struct refit_context *q = user;
 
 	(void)shape;
 	(void)linear;
@@ -80,7 +80,7 @@ static void count(void *user, const struct shape *shape, const struct linear *li
 }
 
 /* E at a place of a space, on the objective's table. */
-static double error_at(struct inquiry *q, struct objective *o, const struct space *space, const double x[],
+static double error_at(struct refit_context *q, struct objective *o, const struct space *space, const double x[],
 		       double tolerance, struct linear *linear)
 {
 	const struct shape shape = space_shape(space, x);
@@ -89,24 +89,24 @@ static double error_at(struct inquiry *q, struct objective *o, const struct spac
 	return objective_eval(o, &shape, tolerance, false, linear);
 }
 
-/* Adds the place of a shape, if it is among the `most` best so far. */
-static void offer(struct inquiry *q, struct objective *o, const struct space *space, struct shape shape,
-		  struct space_point *start, int *n, int most)
+/* Adds the place of a shape, if it is among the `max_count` best so far. */
+static void offer(struct refit_context *q, struct objective *o, const struct space *space, struct shape shape,
+		  struct space_point *start, int *n, int max_count)
 {
 	struct space_point place;
 
 	space_place(space, &shape, place.x);
 	place.error = error_at(q, o, space, place.x, 2e-3, &place.linear);
-	int at = *n < most ? (*n)++ : most;
+	int at = *n < max_count ? (*n)++ : max_count;
 
 	for (; at > 0 && start[at - 1].error > place.error; at--)
-		if (at < most)
+		if (at < max_count)
 			start[at] = start[at - 1];
-	if (at < most)
+	if (at < max_count)
 		start[at] = place;
 }
 
-/* The value of the axis that is next to a pin's. */
+/* The value of the axis that is next to a fixed parameter's. */
 static int nearest(const struct axis *axis, double value)
 {
 	int best = 0;
@@ -119,24 +119,24 @@ static int nearest(const struct axis *axis, double value)
 
 enum { STARTS = 2 };
 
-/* Where a refit under a pin begins: at the optimum, and at the best that the scan has seen there. Under a pin of kd or
+/* Where a refit under a fixed parameter begins: at the optimum, and at the best that the scan has seen there. Under a fixed kd or
  * ks, at the best of each sigma; and, since ks may be large where F is small, at the least index. */
-static int first_places(struct inquiry *q, struct objective *o, const struct space *space, const struct pin *pin,
-			struct space_point start[STARTS])
+static int first_places(struct refit_context *q, struct objective *o, const struct space *space,
+			const struct fixed *fixed, struct space_point start[STARTS])
 {
-	const struct scan_minima *e = q->evidence;
+	const struct scan_minima *e = q->minima;
 	int n = 0;
 
 	offer(q, o, space, q->best, start, &n, STARTS);
-	if (pin->dim >= 0) {
-		const int i = nearest(&q->space.axis[pin->dim], pin->value);
+	if (fixed->dim >= 0) {
+		const int i = nearest(&q->space.axis[fixed->dim], fixed->value);
 
-		offer(q, o, space, space_shape(&q->space, e->slice[pin->dim][i].x), start, &n, STARTS);
+		offer(q, o, space, space_shape(&q->space, e->slice[fixed->dim][i].x), start, &n, STARTS);
 		return n;
 	}
 	for (int i = 0; q->space.dims > 0 && i < q->space.axis[0].count; i++)
 		offer(q, o, space, space_shape(&q->space, e->slice[0][i].x), start, &n, STARTS);
-	if (pin->specular) {
+	if (fixed->specular) {
 		struct shape faint = q->best;
 
 		faint.ior = FIT_IOR_MIN;
@@ -146,20 +146,20 @@ static int first_places(struct inquiry *q, struct objective *o, const struct spa
 }
 
 /* Improves a place on a level's table, on which the optimum has the error `best`, unless there is nothing to search. */
-static enum status descend(struct inquiry *q, struct objective *o, const struct space *space, int level, double best,
-			   struct space_point *place)
+static enum status descend(struct refit_context *q, struct objective *o, const struct space *space, int level,
+			   double best, struct space_point *place)
 {
-	struct local_how how = hows[level];
+	struct local_settings settings = level_settings[level];
 
-	how.enough = best * (1 + FIT_UNDETERMINED / 2) + FIT_UNDETERMINED_FLOOR / 2;
-	place->error = error_at(q, o, space, place->x, 0.1 * how.tolerance, &place->linear);
-	if (space->dims == 0 || place->error <= how.enough)
+	settings.enough = best * (1 + FIT_UNDETERMINED / 2) + FIT_UNDETERMINED_FLOOR / 2;
+	place->error = error_at(q, o, space, place->x, 0.1 * settings.tolerance, &place->linear);
+	if (space->dims == 0 || place->error <= settings.enough)
 		return STATUS_OK;
-	return local_descend(space, o, &how, count, q, place, NULL);
+	return local_descend(space, o, &settings, count, q, place, NULL);
 }
 
 /* The best start on the coarsest table, improved. */
-static enum status descend_coarse(struct inquiry *q, const struct pin *pin, const struct space *space,
+static enum status descend_coarse(struct refit_context *q, const struct fixed *fixed, const struct space *space,
 				  struct space_point *best)
 {
 	struct space_point start[STARTS];
@@ -168,8 +168,8 @@ static enum status descend_coarse(struct inquiry *q, const struct pin *pin, cons
 
 	if (status != STATUS_OK)
 		return status;
-	pin_objective(&o, pin);
-	const int n = first_places(q, &o, space, pin, start);
+	fix_objective(&o, fixed);
+	const int n = first_places(q, &o, space, fixed, start);
 
 	best->error = INFINITY;
 	for (int i = 0; i < n && best->error > limit_of(0, q->coarse) && status == STATUS_OK; i++) {
@@ -181,9 +181,9 @@ static enum status descend_coarse(struct inquiry *q, const struct pin *pin, cons
 	return status;
 }
 
-/* Goes on under a pin on the table of a finer level; on the full one only to look. */
-static enum status descend_finer(struct inquiry *q, const struct pin *pin, const struct space *space, int level,
-				 struct space_point *place, bool *reached)
+/* Goes on under a fixed parameter on the table of a finer level; on the full one only evaluates. */
+static enum status descend_finer(struct refit_context *q, const struct fixed *fixed, const struct space *space,
+				 int level, struct space_point *place, bool *reached)
 {
 	const bool full = level == SEARCH_LEVELS - 1;
 	struct objective o;
@@ -194,7 +194,7 @@ static enum status descend_finer(struct inquiry *q, const struct pin *pin, const
 		return status;
 	const double best = full ? q->error : objective_eval(&o, &q->best, 1e-5, false, &linear);
 
-	pin_objective(&o, pin);
+	fix_objective(&o, fixed);
 	if (full)
 		place->error = error_at(q, &o, space, place->x, 1e-7, &linear);
 	else
@@ -204,28 +204,28 @@ static enum status descend_finer(struct inquiry *q, const struct pin *pin, const
 	return status;
 }
 
-/* Whether E is in reach under a pin, the other parameters refitted. */
-static enum status reaches(struct inquiry *q, const struct pin *pin, bool *reached)
+/* Whether E is in reach under a fixed parameter, the other parameters refitted. */
+static enum status reaches(struct refit_context *q, const struct fixed *fixed, bool *reached)
 {
-	const struct space space = pinned_space(q, pin);
+	const struct space space = fixed_space(q, fixed);
 	struct space_point place = {.error = INFINITY};
-	enum status status = descend_coarse(q, pin, &space, &place);
+	enum status status = descend_coarse(q, fixed, &space, &place);
 
 	*reached = place.error <= limit_of(0, q->coarse);
 	for (int level = 1; level < SEARCH_LEVELS && *reached && status == STATUS_OK; level++)
-		status = descend_finer(q, pin, &space, level, &place, reached);
+		status = descend_finer(q, fixed, &space, level, &place, reached);
 	return status;
 }
 
 /* Whether E is in reach at all the values of a parameter. */
-static enum status reaches_all(struct inquiry *q, struct pin pin, const double value[], int n, bool *reached)
+static enum status reaches_all(struct refit_context *q, struct fixed fixed, const double value[], int n, bool *reached)
 {
 	enum status status = STATUS_OK;
 
 	*reached = true;
 	for (int i = 0; i < n && *reached && status == STATUS_OK; i++) {
-		pin.value = value[i];
-		status = reaches(q, &pin, reached);
+		fixed.value = value[i];
+		status = reaches(q, &fixed, reached);
 		if (fit_cancelled(q->options))
 			status = STATUS_INTERRUPTED;
 	}
@@ -233,10 +233,10 @@ static enum status reaches_all(struct inquiry *q, struct pin pin, const double v
 }
 
 /* The values of dimension d to try: where the scan was worst first, then the ends of the range and the rest of the axis. */
-static int values_of(const struct inquiry *q, int d, double value[])
+static int values_of(const struct refit_context *q, int d, double value[])
 {
 	const struct axis *axis = &q->space.axis[d];
-	const struct space_point *slice = q->evidence->slice[d];
+	const struct space_point *slice = q->minima->slice[d];
 	int worst = 0, n = 0;
 
 	for (int i = 1; i < axis->count; i++)
@@ -251,17 +251,17 @@ static int values_of(const struct inquiry *q, int d, double value[])
 	return n;
 }
 
-static enum status shape_parameter(struct inquiry *q, int d, bool *undetermined)
+static enum status shape_parameter(struct refit_context *q, int d, bool *undetermined)
 {
 	double value[SPACE_VALUES + 2];
 	const int n = values_of(q, d, value);
 
-	return reaches_all(q, (struct pin){.dim = d}, value, n, undetermined);
+	return reaches_all(q, (struct fixed){.dim = d}, value, n, undetermined);
 }
 
 /* Whether E is in reach at both ends of a factor with the shape as it is. It is convex in kd and ks: then it is in reach
  * all the way. */
-static enum status reaches_both_ends(struct inquiry *q, int channel, bool specular, bool *reached)
+static enum status reaches_both_ends(struct refit_context *q, int channel, bool specular, bool *reached)
 {
 	struct objective o;
 	struct linear linear;
@@ -279,9 +279,9 @@ static enum status reaches_both_ends(struct inquiry *q, int channel, bool specul
 	return status;
 }
 
-static enum status factor(struct inquiry *q, int channel, bool specular, bool *undetermined)
+static enum status factor(struct refit_context *q, int channel, bool specular, bool *undetermined)
 {
-	/* Of the upper end; first the one of which `rise` tells. */
+	/* Of the upper end; first the one of which `increase` tells. */
 	enum { SHARES = 8 };
 	static const double share[2][SHARES] = {{1, 0, 0.6, 0.3, 0.1, 1e-2, 1e-3, 1e-4},
 						{0, 1, 0.6, 0.3, 0.1, 1e-2, 1e-3, 1e-4}};
@@ -289,18 +289,18 @@ static enum status factor(struct inquiry *q, int channel, bool specular, bool *u
 	double value[SHARES];
 
 	*undetermined = false;
-	if (q->coarse + q->rise[specular][channel] > limit_of(0, q->coarse))
+	if (q->coarse + q->increase[specular][channel] > limit_of(0, q->coarse))
 		return STATUS_OK;
 	enum status status = STATUS_OK;
 
 	/* Where that is likely it saves the refits. */
-	if (q->coarse + q->rise_of_best[specular][channel] <= limit_of(1, q->coarse))
+	if (q->coarse + q->increase_of_best[specular][channel] <= limit_of(1, q->coarse))
 		status = reaches_both_ends(q, channel, specular, undetermined);
 	if (status != STATUS_OK || *undetermined)
 		return status;
 	for (int n = 0; n < SHARES; n++)
 		value[n] = most * share[specular][n];
-	return reaches_all(q, (struct pin){.dim = -1, .channel = channel, .specular = specular}, value, SHARES,
+	return reaches_all(q, (struct fixed){.dim = -1, .channel = channel, .specular = specular}, value, SHARES,
 			   undetermined);
 }
 
@@ -323,8 +323,8 @@ static unsigned bits_of_factor(const struct fit_options *options, int channel, b
 
 /* Notes by how much each channel's error rises at one shape, whose own E may be refitted to `above` that of the optimum:
  * there no refit brings the sum of both below its least over all shapes. */
-static void note_rise(struct inquiry *q, struct objective *o, const struct shape *shape, double above,
-		      const struct linear *lambert)
+static void note_increase(struct refit_context *q, struct objective *o, const struct shape *shape, double above,
+			  const struct linear *lambert)
 {
 	struct linear free, white;
 
@@ -335,16 +335,16 @@ static void note_rise(struct inquiry *q, struct objective *o, const struct shape
 	objective_eval(o, shape, 1e-4, false, &white);
 	q->evaluations += 2;
 	for (int c = 0; c < MERL_CHANNELS; c++) {
-		q->rise[0][c] = fmin(q->rise[0][c], above + white.channel[c] - free.channel[c]);
-		q->rise[1][c] = fmin(q->rise[1][c], above + lambert->channel[c] - free.channel[c]);
+		q->increase[0][c] = fmin(q->increase[0][c], above + white.channel[c] - free.channel[c]);
+		q->increase[1][c] = fmin(q->increase[1][c], above + lambert->channel[c] - free.channel[c]);
 	}
 }
 
 /* What the coarsest table tells before any refit. */
-static enum status look_at_coarse(struct inquiry *q)
+static enum status evaluate_coarse(struct refit_context *q)
 {
 	const int n = q->space.dims > 0 ? q->space.axis[0].count : 0;
-	const struct space_point *slice = q->evidence->slice[0];
+	const struct space_point *slice = q->minima->slice[0];
 	struct objective o;
 	struct linear linear;
 	enum status status = open_level(q, 0, &o);
@@ -354,26 +354,26 @@ static enum status look_at_coarse(struct inquiry *q)
 	q->coarse = objective_eval(&o, &q->best, 1e-5, false, &linear);
 	for (int c = 0; c < MERL_CHANNELS; c++) {
 		objective_pin(&o, c, true, 0);
-		q->rise[0][c] = q->rise[1][c] = INFINITY;
+		q->increase[0][c] = q->increase[1][c] = INFINITY;
 	}
 	q->lambert = objective_eval(&o, &q->best, 1e-5, false, &linear);
 	q->evaluations += 2;
-	note_rise(q, &o, &q->best, 0, &linear);
-	memcpy(q->rise_of_best, q->rise, sizeof q->rise);
+	note_increase(q, &o, &q->best, 0, &linear);
+	memcpy(q->increase_of_best, q->increase, sizeof q->increase);
 	for (int i = 0; i < n; i++) {
 		/* A fifth is what the scan may be above the bottom of its valley. */
 		const double above = fmax(slice[i].error / 1.2 - q->coarse, 0);
 		const struct shape shape = space_shape(&q->space, slice[i].x);
 
 		if (q->coarse + above <= limit_of(0, q->coarse))
-			note_rise(q, &o, &shape, above, &linear);
+			note_increase(q, &o, &shape, above, &linear);
 	}
 	objective_free(&o);
 	return STATUS_OK;
 }
 
 /* Whether no specular term at all is as good: then any shape is. */
-static enum status can_do_without_lobe(struct inquiry *q, bool *can)
+static enum status can_do_without_lobe(struct refit_context *q, bool *can)
 {
 	struct objective o;
 	struct linear linear;
@@ -389,7 +389,7 @@ static enum status can_do_without_lobe(struct inquiry *q, bool *can)
 }
 
 /* A free parameter of the model: dimension n of the space, or a factor behind them. */
-static enum status ask(struct inquiry *q, int n, unsigned determined, bool any_shape, unsigned *bits)
+static enum status ask(struct refit_context *q, int n, unsigned determined, bool any_shape, unsigned *bits)
 {
 	const struct fit_options *options = q->options;
 	bool undetermined = any_shape;
@@ -413,7 +413,7 @@ static enum status ask(struct inquiry *q, int n, unsigned determined, bool any_s
 }
 
 /* Where D is free there is no shape to be refitted. */
-static enum status find_of_table(struct inquiry *q, unsigned *undetermined)
+static enum status find_of_table(struct refit_context *q, unsigned *undetermined)
 {
 	const bool free_ior = q->options->fresnel != FRESNEL_NONE && isnan(q->options->ior);
 	bool any = false;
@@ -428,11 +428,11 @@ static enum status find_of_table(struct inquiry *q, unsigned *undetermined)
 }
 
 enum status undetermined_find(const struct multiresolution *levels, const struct fit_options *options,
-			      const struct ndf_class *class, const struct scan_minima *evidence,
-			      const struct shape *best, double error, unsigned determined, unsigned *undetermined,
-			      long *evaluations)
+			      const struct ndf_class *class, const struct scan_minima *minima, const struct shape *best,
+			      double error, unsigned determined, unsigned *undetermined, long *evaluations)
 {
-	struct inquiry q = {.levels = levels, .options = options, .class = class, .evidence = evidence, .best = *best};
+	struct refit_context q = {
+		.levels = levels, .options = options, .class = class, .minima = minima, .best = *best};
 	bool any_shape = false;
 	unsigned all = 0;
 
@@ -440,7 +440,7 @@ enum status undetermined_find(const struct multiresolution *levels, const struct
 	if (ndf_is_tabulated(class))
 		return find_of_table(&q, undetermined);
 	space_init(&q.space, options, class);
-	enum status status = look_at_coarse(&q);
+	enum status status = evaluate_coarse(&q);
 
 	if (status == STATUS_OK && options->specular && q.lambert <= limit_of(0, q.coarse))
 		status = can_do_without_lobe(&q, &any_shape);

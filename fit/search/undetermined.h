@@ -16,10 +16,10 @@ double undetermined_limit(double error);
 
 /* undetermined_find - the free parameters, as bits of enum fit_bound, that are undetermined at the optimum *best, whose E
  * on the full table is `error`. Counts the shapes that it evaluates in *evaluations.
- * Given:  *evidence of the search_run() of this NDF under these options; determined: parameters known not to be
+ * Given:  *minima of the search_run() of this NDF under these options; determined: parameters known not to be
  * Errors: STATUS_NO_MEMORY, STATUS_INTERRUPTED */
 MUST_CHECK enum status undetermined_find(const struct multiresolution *levels, const struct fit_options *options,
-					 const struct ndf_class *class, const struct scan_minima *evidence,
+					 const struct ndf_class *class, const struct scan_minima *minima,
 					 const struct shape *best, double error, unsigned determined,
 					 unsigned *undetermined, long *evaluations);
 

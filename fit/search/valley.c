@@ -5,7 +5,7 @@
 struct walk {
 	const struct space *space;
 	struct objective *objective;
-	local_note *note;
+	local_report *report;
 	void *user;
 	int d; /* the dimension that moves */
 };
@@ -13,14 +13,14 @@ struct walk {
 /* The best of the other parameters with that of dimension d at `value`, sought from a place near by. */
 static enum status refit(const struct walk *w, const struct space_point *from, double value, struct space_point *to)
 {
-	static const struct local_how how = {NLOPT_LN_SBPLX, 0.02, 1e-4, 100, false, 0};
+	static const struct local_settings settings = {NLOPT_LN_SBPLX, 0.02, 1e-4, 100, false, 0};
 	const struct shape near = space_shape(w->space, from->x);
 	struct space others = *w->space;
 	struct space_point place = *from;
 
-	space_pin(&others, w->d, value);
+	space_fix(&others, w->d, value);
 	space_place(&others, &near, place.x);
-	const enum status status = local_descend(&others, w->objective, &how, w->note, w->user, &place, NULL);
+	const enum status status = local_descend(&others, w->objective, &settings, w->report, w->user, &place, NULL);
 	const struct shape shape = space_shape(&others, place.x);
 
 	*to = place;
@@ -52,16 +52,16 @@ static enum status follow(const struct walk *w, double least, struct space_point
 	return status;
 }
 
-enum status valley_follow(const struct space *space, struct objective *o, local_note *note, void *user,
+enum status valley_follow(const struct space *space, struct objective *o, local_report *report, void *user,
 			  struct space_point *place)
 {
 	const struct shape shape = space_shape(space, place->x);
 	enum status status = STATUS_OK;
 
 	place->error = objective_eval(o, &shape, 1e-5, false, &place->linear);
-	note(user, &shape, &place->linear);
+	report(user, &shape, &place->linear);
 	for (int d = 0; d < space->dims && space->dims > 1 && status == STATUS_OK; d++) {
-		const struct walk walk = {space, o, note, user, d};
+		const struct walk walk = {space, o, report, user, d};
 
 		if (space->coordinate[d] == COORDINATE_GAMMA)
 			status = follow(&walk, space->least_gamma, place);

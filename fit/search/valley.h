@@ -11,10 +11,10 @@
 
 /* valley_follow - improves *place on the objective's table: gamma, then n, is moved in steps, the other parameters of the
  * shape refitted at each, as long as that lowers E.
- * Given:   note, user: told of every look
+ * Given:   report, user: called at every evaluation
  * Returns: place->error, E there on the objective's table
  * Errors:  as local_descend() */
-MUST_CHECK enum status valley_follow(const struct space *space, struct objective *objective, local_note *note,
+MUST_CHECK enum status valley_follow(const struct space *space, struct objective *objective, local_report *report,
 				     void *user, struct space_point *place);
 
 #endif
