@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Targets: all (default), check, demo, bench, figures, stability, asan, ubsan, tsan, lint, valgrind, compilers, fuzz,
+# Targets: all (default), check, check-long, demo, bench, figures, stability, asan, ubsan, tsan, lint, valgrind, compilers, fuzz,
 # killtest, install, uninstall, dist, clean. Those that check or show something install what is missing first.
 VERSION := 0.2.0
 
@@ -54,6 +54,12 @@ CFLAGS_kernel_pick := -DKERNEL_HAVE_AVX2
 endif
 test_sources := $(wildcard tests/test_*.c)
 test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
+# Attacks on inputs, outputs and memory, and fits of hard tables: half of the time of all tests.
+only_long := alloc fetch free_form hostile hostile_names hostile_outputs slurm stiff
+# Some cases in check, all in check-long: check.h, case_step().
+with_long_cases := fit objective
+short_programs := $(filter-out $(only_long:%=$(BUILD)/tests/test_%),$(test_programs))
+long_programs := $(foreach t,$(only_long) $(with_long_cases),$(BUILD)/tests/test_$(t))
 
 # Made by the program from its own tables; RUN runs it where it is built for another machine, as in RUN=qemu-aarch64.
 manuals := $(BUILD)/stdfit.1 $(BUILD)/completions/stdfit.bash $(BUILD)/completions/_stdfit
@@ -86,18 +92,25 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(lib_objects)
 setup:
 	@scripts/setup.sh
 
-# Recursive, so that pkg-config is asked only after the set-up has run.
-check: setup
-	@$(MAKE) --no-print-directory run-tests
+# Recursive, so that pkg-config is asked only after the set-up has run. check is what one runs after every change; check-long
+# has the programs that take long, and all cases of those in which check takes some.
+check check-long: setup
+	@$(MAKE) --no-print-directory $(if $(filter check,$@),run-tests,run-long-tests)
 
-run-tests: all library $(test_programs)
-	@CC='$(CC)' OPT='$(OPT)' scripts/run_tests.sh $(BUILD) $(test_programs)
+run-tests: all library $(short_programs)
+	@CC='$(CC)' OPT='$(OPT)' scripts/run_tests.sh $(BUILD) $(short_programs)
+
+run-long-tests: all library $(long_programs)
+	@CC='$(CC)' OPT='$(OPT)' STDFIT_LONG=1 scripts/run_tests.sh $(BUILD) $(long_programs)
+
+run-all-tests: all library $(test_programs)
+	@CC='$(CC)' OPT='$(OPT)' STDFIT_LONG=1 scripts/run_tests.sh $(BUILD) $(test_programs)
 
 # The whole suite under sanitizers, each in a build of its own. ThreadSanitizer needs clang, whose OpenMP tells it, through
 # Archer, what waits for what; of libraries that were not built for it, it knows nothing and should say nothing.
 asan ubsan tsan: setup
 	@$(environment_$@) $(MAKE) --no-print-directory BUILD=$(BUILD)-$@ OPT='-O1 -g -fno-omit-frame-pointer $(sanitize_$@)' \
-		$(if $(filter tsan,$@),CC=clang) run-tests
+		$(if $(filter tsan,$@),CC=clang) run-all-tests
 sanitize_asan := -fsanitize=address
 sanitize_ubsan := -fsanitize=undefined,float-cast-overflow -fno-sanitize-recover=all
 sanitize_tsan := -fsanitize=thread
@@ -175,6 +188,6 @@ clean:
 
 include scripts/install.mk
 
-.PHONY: all setup check run-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo clean
+.PHONY: all setup check check-long run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo clean
 
 -include $(lib_objects:.o=.d) $(BUILD)/fit/commands/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))

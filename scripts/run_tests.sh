@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # usage: run_tests.sh BUILD PROGRAM...
-# Runs every test program, shows what each printed and, last, cmocka's summaries of all. Fails if any failed or crashed.
+# Runs every test program and shows what each printed; then one line that sums up and names what was skipped and why; last,
+# cmocka's summaries of all. Fails if a test failed, a program crashed, or a test was skipped without a reason.
 set -u
 
 build=$1
@@ -18,6 +19,7 @@ trap 'exit 130' INT TERM
 summary='^\[[ =A-Z]*\] .*test\(s\)( run)?[.,]'
 
 failed=
+: >"$output/reasons"
 for program; do
 	echo "== $program"
 	"$program" >"$output/all" 2>&1
@@ -30,8 +32,22 @@ for program; do
 	elif [ ! -s "$output/summary" ]; then
 		failed="$failed $program (left before its tests were through)"
 	fi
+	# check.h: skip_for_want_of(), skip_because(). A test that is skipped otherwise needs nothing but the repository.
+	grep -a -E '^skipped (for want of|because) ' "$output/all" >"$output/why"
+	cat "$output/why" >>"$output/reasons"
+	[ "$(grep -a '^\[  SKIPPED \] [^0-9]' "$output/all" | sort -u | wc -l)" -le "$(wc -l <"$output/why")" ] ||
+		failed="$failed $program (a test was skipped without a reason)"
 done
 
 [ -z "$failed" ] || echo "run_tests: failed:$failed"
+awk '/ run\.$/ { run += $2 } /PASSED/ { passed += $4 } END { printf "run_tests: %d tests run, %d passed", run, passed }' "$output/summaries"
+sort "$output/reasons" | uniq -c | awk '
+{
+	n = $1
+	sub(/^ *[0-9]+ skipped /, "")
+	total += n
+	why = why (NR == 1 ? "" : ", ") n " " $0
+}
+END { print total ? "; " total " skipped: " why : "; none skipped" }'
 cat "$output/summaries"
 [ -z "$failed" ]

@@ -57,6 +57,34 @@ static inline void check_between(double got, double low, double high, const char
 enum { GOLDEN_FIELDS = 16 };
 
 /* struct golden - a CSV of reference values: lines of comment starting with '#', a line of names, rows. */
+/* skip_for_want_of - ends a test that cannot run without a Debian package which the machine lacks; skip_because - or for
+ * another reason. run_tests.sh counts these lines: a test that is skipped without one is a failure. */
+static inline void skip_for_want_of(const char *package)
+{
+	print_message("skipped for want of %s\n", package);
+	skip();
+}
+
+static inline void skip_because(const char *reason)
+{
+	print_message("skipped because %s\n", reason);
+	skip();
+}
+
+/* long_tests - whether `make check-long` is running: then a test that goes through many cases of one kind takes all of them,
+ * else every case_step()-th. */
+static inline bool long_tests(void)
+{
+	const char *set = getenv("STDFIT_LONG");
+
+	return set && *set == '1';
+}
+
+static inline size_t case_step(size_t step)
+{
+	return long_tests() ? 1 : step;
+}
+
 struct golden {
 	FILE *file;
 	const char *path;

@@ -631,10 +631,8 @@ static void make_files(void)
 static void light(void **state)
 {
 	(void)state;
-	if (!OWN_ALLOCATOR) {
-		print_message("ThreadSanitizer lets no other malloc() be\n");
-		skip();
-	}
+	if (!OWN_ALLOCATOR)
+		skip_because("ThreadSanitizer lets no other malloc() be");
 	make_files();
 	for (size_t i = 0; i < sizeof scenarios / sizeof *scenarios; i++)
 		if (!scenarios[i].heavy && is_wanted(&scenarios[i]))
@@ -645,7 +643,7 @@ static void heavy(void **state)
 {
 	(void)state;
 	if (!OWN_ALLOCATOR)
-		skip();
+		skip_because("ThreadSanitizer lets no other malloc() be");
 	make_files();
 	for (size_t i = 0; i < sizeof scenarios / sizeof *scenarios; i++)
 		if (scenarios[i].heavy && is_wanted(&scenarios[i]))

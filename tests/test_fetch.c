@@ -122,7 +122,7 @@ static void with_each_tool(void (*test)(void))
 		test();
 	}
 	if (!any)
-		skip();
+		skip_for_want_of("curl and wget");
 }
 
 /* The directory has the right file, and nothing else. */
@@ -353,10 +353,8 @@ static void the_archive(void **state)
 	shell("mkdir -p x/BRDFDatabase/brdfs && cd x && ln ../expected.binary BRDFDatabase/brdfs/brass.binary && head "
 	      "-c "
 	      "1000 ../expected.binary >BRDFDatabase/brdfs/nickel.binary && zip -q -0 -r ../all.zip BRDFDatabase");
-	if (last.code || !has(tool) || access("path-curl/unzip", X_OK)) {
-		print_message("zip, unzip, or both curl and wget are not installed: not tried\n");
-		skip();
-	}
+	if (last.code || !has(tool) || access("path-curl/unzip", X_OK))
+		skip_for_want_of("zip, unzip, or curl and wget");
 	/* In pieces, of which an earlier run left some. */
 	shell("rm -rf d; mkdir d; : >requests; head -c 5000 all.zip >d/all.zip.part");
 	fetch("cutfile/all.zip?download=1", "d brass nickel steel");
@@ -440,7 +438,7 @@ static void slow_servers(void **state)
 			}
 		}
 	if (!any)
-		skip();
+		skip_for_want_of("curl and wget");
 }
 
 int main(void)

@@ -24,7 +24,7 @@ static const struct material materials[] = {
 static void recovers_the_parameters(void **state)
 {
 	(void)state;
-	for (size_t n = 0; n < sizeof materials / sizeof *materials; n++) {
+	for (size_t n = 0; n < sizeof materials / sizeof *materials; n += case_step(2)) {
 		const struct material *m = &materials[n];
 		const struct fit_options options = options_for(m->ndf);
 		struct cook_torrance truth = make_model(m->ndf, m->sigma, m->gamma, m->n);

@@ -56,10 +56,8 @@ static void directories_that_cannot_be_read(void **state)
 	expect_code(0);
 	snprintf(command, sizeof command, "%s test -x \"$STDFIT\"", root ? UNPRIVILEGED : "");
 	shell(command);
-	if (last.code) {
-		print_message("root is refused nothing, and cannot run the program as somebody else here\n");
-		skip();
-	}
+	if (last.code)
+		skip_because("root is refused nothing, and cannot run the program as somebody else here");
 	snprintf(command, sizeof command, "exec %s \"$STDFIT\" -r closed " CHEAP, root ? UNPRIVILEGED : "");
 	shell(command);
 	expect_code(1);
@@ -376,7 +374,7 @@ static void outputs_on_a_full_disk(void **state)
 {
 	(void)state;
 	if (THREAD_SANITIZER)
-		skip();
+		skip_because("a limit on the size of files hits ThreadSanitizer's own");
 	stdfit("a.binary " CHEAP " -o full.csv");
 	expect_code(0);
 	/* Room for less than a row: the old table gets out of the way for nothing, but stays. */

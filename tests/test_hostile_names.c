@@ -75,10 +75,8 @@ static void expect_nothing_executed(void)
 static void names_in_plots_and_pages(void **state)
 {
 	(void)state;
-	if (!have_gnuplot()) {
-		print_message("gnuplot is not installed\n");
-		skip();
-	}
+	if (!have_gnuplot())
+		skip_for_want_of("gnuplot-nox");
 	stdfit("plot hostile.csv -o " ODD_PLACE);
 	expect_nowhere(NAMES);
 	expect_nothing_executed();
@@ -133,7 +131,7 @@ static void names_in_traces(void **state)
 	write_text("names-trace.csv", text);
 	free(text);
 	if (!have_gnuplot())
-		skip();
+		skip_for_want_of("gnuplot-nox");
 	stdfit("plot names-trace.csv -o trace-plots");
 	expect_code(0);
 	assert_string_equal(last.err, "");

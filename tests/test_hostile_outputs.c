@@ -34,8 +34,7 @@ static void mount_disk(const char *options)
 		apart = !unshare(CLONE_NEWNS) && !mount(NULL, "/", NULL, MS_REC | MS_PRIVATE, NULL);
 	if (apart && !mount("none", "disk", "tmpfs", 0, options))
 		return;
-	print_message("a disk cannot be mounted here: %s\n", strerror(errno));
-	skip();
+	skip_because("a disk cannot be mounted here");
 }
 
 static void unmount_disk(void)
@@ -134,7 +133,7 @@ static void plots_on_a_small_disk(void **state)
 {
 	(void)state;
 	if (!have_gnuplot())
-		skip();
+		skip_for_want_of("gnuplot-nox");
 	mount_disk("size=2m");
 	stdfit("plot fit.csv -o plots");
 	expect_code(0);
@@ -164,7 +163,7 @@ static void pages_on_a_small_disk(void **state)
 {
 	(void)state;
 	if (!have_gnuplot())
-		skip();
+		skip_for_want_of("gnuplot-nox");
 	mount_disk("size=2m");
 	stdfit("report fit.csv " QUICK " -o page");
 	expect_code(0);
@@ -195,7 +194,7 @@ static void files_that_grow_too_large(void **state)
 {
 	(void)state;
 	if (THREAD_SANITIZER)
-		skip();
+		skip_because("a limit on the size of files hits ThreadSanitizer's own");
 	shell("echo old >large.pfm; ulimit -f 1; exec \"$STDFIT\" render a.binary " MODEL
 	      " --size 64 --samples 1 -o large.pfm >out");
 	expect_error(1, "cannot write 'large.pfm': File too large");
@@ -306,10 +305,8 @@ static void directories_that_take_nothing(void **state)
 	shell("mkdir shut; chmod 555 shut; chmod 644 a.binary fit.csv");
 	snprintf(text, sizeof text, "%s test -x \"$STDFIT\"", who);
 	shell(text);
-	if (last.code) {
-		print_message("root is refused nothing, and cannot run the program as somebody else here\n");
-		skip();
-	}
+	if (last.code)
+		skip_because("root is refused nothing, and cannot run the program as somebody else here");
 	for (size_t c = 0; c < sizeof command / sizeof *command; c++) {
 		snprintf(text, sizeof text, "exec %s \"$STDFIT\" %s >out", who, command[c]);
 		shell(text);

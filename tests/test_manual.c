@@ -115,7 +115,7 @@ static void bash_completes_every_option(void **state)
 {
 	(void)state;
 	if (!installed("bash"))
-		skip();
+		skip_for_want_of("bash");
 	stdfit("--completion bash >stdfit.bash");
 	expect_code(0);
 	FILE *script = bash_script(), *expected = fopen("expected", "w");
@@ -159,7 +159,7 @@ static void bash_completes_as_typed(void **state)
 {
 	(void)state;
 	if (!installed("bash"))
-		skip();
+		skip_for_want_of("bash");
 	stdfit("--completion bash >stdfit.bash");
 	write_text("compass.binary", "");
 	bash_completes("stdfit comp", "compare compass.binary");
@@ -205,7 +205,7 @@ static void zsh_completes_as_typed(void **state)
 {
 	(void)state;
 	if (!installed("zsh"))
-		skip();
+		skip_for_want_of("zsh");
 	stdfit("--completion zsh >_stdfit");
 	expect_code(0);
 	shell("zsh -f -n _stdfit");

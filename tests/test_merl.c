@@ -585,10 +585,8 @@ static void test_refuses_huge_file(void **state)
 {
 	const char *path = make_table(*state, "huge.binary", 90, 90, 180, (off_t)1 << 40);
 
-	if (!path) {
-		print_message("this file system cannot hold a sparse file of 1 TB\n");
-		skip();
-	}
+	if (!path)
+		skip_because("this file system cannot hold a sparse file of 1 TB");
 	check_refused(path, STATUS_FORMAT, "found 1099511627776");
 }
 
@@ -602,18 +600,14 @@ static void unprivileged(struct place *place, void (*body)(struct place *place))
 		return;
 	}
 	assert_int_equal(chmod(place->dir, mode_of(place->dir) | 0111), 0);
-	if (seteuid(65534) != 0) {
-		print_message("root is refused nothing, and cannot become somebody else here\n");
-		skip();
-	}
+	if (seteuid(65534) != 0)
+		skip_because("root is refused nothing, and cannot become somebody else here");
 	const bool reachable = faccessat(AT_FDCWD, place->dir, X_OK, AT_EACCESS) == 0;
 	if (reachable)
 		body(place);
 	assert_int_equal(seteuid(uid), 0);
-	if (!reachable) {
-		print_message("the temporary directory is closed to others than root\n");
-		skip();
-	}
+	if (!reachable)
+		skip_because("the temporary directory is closed to others than root");
 }
 
 static void read_unreadable(struct place *place)

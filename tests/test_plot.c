@@ -238,7 +238,7 @@ static void a_table_becomes_pictures(void **state)
 {
 	(void)state;
 	if (!have_gnuplot())
-		skip();
+		skip_for_want_of("gnuplot-nox");
 	stdfit("plot fits.csv -o out");
 	expect_code(0);
 	assert_string_equal(last.out, "");
@@ -273,7 +273,7 @@ static void what_is_missing_is_told(void **state)
 {
 	(void)state;
 	if (!have_gnuplot())
-		skip();
+		skip_for_want_of("gnuplot-nox");
 	shell("mkdir -p gone; cp a.binary gone/b.binary; \"$STDFIT\" fit a.binary gone/b.binary " CHEAP
 	      " -q -o two.csv; rm gone/b.binary");
 	stdfit("plot two.csv -o two");
@@ -373,7 +373,7 @@ static void a_trace_becomes_a_picture(void **state)
 			    "\n\n\"crs2-joint\",error\n2,0.31\n2,0.31\n");
 	free(text);
 	if (!have_gnuplot())
-		skip();
+		skip_for_want_of("gnuplot-nox");
 	stdfit("plot t.csv -o traces");
 	expect_code(0);
 	assert_string_equal(last.err, "");
@@ -411,7 +411,7 @@ static void searches_of_a_fit_become_one_curve(void **state)
 				  "\n\n\"m, ggx\",error\n4,0.5\n4,0.5\n\n\n\"k, ggx\",error\n4,0.4\n4,0.4\n");
 	free(text);
 	if (!have_gnuplot())
-		skip();
+		skip_for_want_of("gnuplot-nox");
 	stdfit("plot t.csv -o course");
 	expect_code(0);
 	shell("grep -c 'm, std' course/trace.svg");

@@ -103,7 +103,7 @@ static void a_table_becomes_a_page(void **state)
 {
 	(void)state;
 	if (!have_gnuplot())
-		skip();
+		skip_for_want_of("gnuplot-nox");
 	stdfit("report odd.csv -o odd " SPHERES);
 	expect_code(0);
 	assert_string_equal(last.out, "");
@@ -136,15 +136,13 @@ static void in_a_browser(void **state)
 {
 	(void)state;
 	if (!have_gnuplot() || access("odd/index.html", F_OK))
-		skip();
+		skip_for_want_of("gnuplot-nox");
 	char *command;
 	assert_true(asprintf(&command, "timeout 120 '%s' odd/index.html", browser_script) > 0);
 	shell(command);
 	free(command);
-	if (last.code == 77) {
-		print_message("chromium, chromedriver or curl is not installed\n");
-		skip();
-	}
+	if (last.code == 77)
+		skip_for_want_of("chromium, chromium-driver or curl");
 	assert_string_equal(last.err, "");
 	expect_code(0);
 }
@@ -154,7 +152,7 @@ static void files_are_fitted_first(void **state)
 {
 	(void)state;
 	if (!have_gnuplot())
-		skip();
+		skip_for_want_of("gnuplot-nox");
 	stdfit("report a.binary -q -o new " SPHERES " " CHEAP);
 	expect_code(0);
 	stdfit("report new/fits.csv --threads 1 -o again " SPHERES);

@@ -194,10 +194,8 @@ static void expect_whole(const char *path)
 static void an_array_and_a_merge(void **state)
 {
 	(void)state;
-	if (!slurm_is_installed()) {
-		print_message("Slurm or munge is not installed (on Debian: apt install slurm-wlm munge): not tried\n");
-		skip();
-	}
+	if (!slurm_is_installed())
+		skip_for_want_of("slurm-wlm or munge");
 	start_slurm();
 	/* The task with the bad file fails; the table is whole all the same. */
 	shell("timeout 250 \"$TOP\"/scripts/slurm_fit.sh -n 3 -w -o fits.csv all " CHEAP);
@@ -265,10 +263,8 @@ static void parallel_over_ssh(void **state)
 {
 	(void)state;
 	shell("command -v parallel && parallel --version | grep -q GNU");
-	if (last.code) {
-		print_message("GNU parallel is not installed (on Debian: apt install parallel): not tried\n");
-		skip();
-	}
+	if (last.code)
+		skip_for_want_of("parallel");
 	/* A login sets SHELL, which parallel's far end runs its jobs with; here it may be unset. */
 	write_text("ssh", "#!/bin/sh\necho \"$1\" >>hosts\nshift\ntest \"$1\" != -- || shift\n"
 			  "SHELL=/bin/sh exec sh -c \"$*\"\n");
