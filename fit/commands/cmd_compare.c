@@ -265,7 +265,7 @@ static enum status write_output(const struct options *options, const struct csv_
 	report_output(table, options_show(options), report_table);
 	if (!options->output)
 		return STATUS_OK;
-	return store_write(options->output, table, options->json ? report_json : report_csv, error);
+	return store_write(options->output, table, options->json ? report_json : csv_write, error);
 }
 
 static enum status fill_table(struct comparison *c, struct csv_table *rows, struct error *error)

@@ -302,7 +302,7 @@ static enum status write_merged(const struct options *options, const struct merg
 	report_output(&merged, options_show(options), show_fits);
 	enum status status = STATUS_OK;
 	if (options->output)
-		status = store_write(options->output, &merged, options->json ? report_json : report_csv, error);
+		status = store_write(options->output, &merged, options->json ? report_json : csv_write, error);
 	free(merged.row); /* the rows are the parts' */
 	return status;
 }

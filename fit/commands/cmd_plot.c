@@ -2,6 +2,7 @@
 /* stdfit plot - fits, and the course of searches, as pictures by gnuplot. */
 #include "data_readers/regular_file.h"
 #include "fit/cli/output_directory.h"
+#include "fit/cli/progress.h"
 #include "fit/commands/commands.h"
 #include "fit/plot/gnuplot.h"
 #include "fit/plot/plot_files.h"

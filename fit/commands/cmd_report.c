@@ -4,6 +4,7 @@
 #include "data_readers/atomic_file.h"
 #include "fit/cli/lighting.h"
 #include "fit/cli/output_directory.h"
+#include "fit/cli/progress.h"
 #include "fit/commands/commands.h"
 #include "fit/page/page.h"
 #include "fit/page/report_spheres.h"

@@ -300,3 +300,10 @@ enum status csv_table_read(struct csv_table *table, const char *path, int needed
 	free(r.text);
 	return status;
 }
+
+void csv_write(FILE *file, const struct csv_table *table)
+{
+	csv_write_header(file, table->column, table->n_columns);
+	for (size_t i = 0; i < table->n_rows; i++)
+		csv_write_row(file, table->row[i], table->n_columns);
+}

@@ -2,7 +2,6 @@
 #include "fit/results/store.h"
 #include "data_readers/atomic_file.h"
 #include "data_readers/text_quote.h"
-#include "fit/cli/report.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -323,7 +322,7 @@ enum status store_rewrite(struct store *store, const struct csv_table *rows, str
 	struct atomic_file file;
 	enum status status = atomic_file_open(&file, store->path, error);
 	if (!status) {
-		report_csv(file.stream, &table);
+		csv_write(file.stream, &table);
 		status = n < store->old.n_rows + rows->n_rows ? back_up(store->path, true, error) : STATUS_OK;
 		if (status)
 			atomic_file_abort(&file);

@@ -2,6 +2,7 @@
 #include "fit/sources/batch.h"
 #include "data_readers/merl.h"
 #include "data_readers/text_quote.h"
+#include "fit/cli/progress.h"
 #include "fit/cli/report.h"
 #include "fit/search/within.h"
 

@@ -165,7 +165,7 @@ static enum status keep_rows(const struct csv_table *rows, const char *directory
 	char *path;
 	if (asprintf(&path, "%s/fits.csv", directory) < 0)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	const enum status status = store_write(path, rows, report_csv, error);
+	const enum status status = store_write(path, rows, csv_write, error);
 	free(path);
 	return status;
 }
