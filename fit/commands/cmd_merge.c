@@ -26,12 +26,12 @@ struct merge {
 };
 
 /* "'part-1.csv' row 3", for messages. */
-enum { PLACE_SIZE = TEXT_QUOTE_SIZE / 2 + 32 };
-static const char *place(char text[PLACE_SIZE], const struct part *part)
+enum { LOCATION_SIZE = TEXT_QUOTE_SIZE / 2 + 32 };
+static const char *location(char text[LOCATION_SIZE], const struct part *part)
 {
 	char name[TEXT_QUOTE_SIZE / 2];
 	text_quote(part->table, name, sizeof name);
-	snprintf(text, PLACE_SIZE, "'%s' row %zu", name, part->number);
+	snprintf(text, LOCATION_SIZE, "'%s' row %zu", name, part->number);
 	return text;
 }
 
@@ -55,9 +55,9 @@ static enum status read_tables(struct merge *m, struct error *error)
 		m->table[t] = csv_table_make(result_columns, RESULT_COLUMNS);
 	for (int t = 0; t < m->n_paths; t++) {
 		enum status status = store_check_columns(m->path[t], error);
-		if (!status)
+		if (status == STATUS_OK)
 			status = csv_table_read(&m->table[t], m->path[t], RESULT_COLUMNS, NULL, error);
-		if (status)
+		if (status != STATUS_OK)
 			return status;
 		n += m->table[t].n_rows;
 	}
@@ -102,7 +102,7 @@ static const char *word_of_one(const char *text, const char *other, size_t *leng
 
 static enum status other_options(const struct part *part, const struct part *first, struct error *error)
 {
-	char here[PLACE_SIZE], there[PLACE_SIZE], word[64], shown[64];
+	char here[LOCATION_SIZE], there[LOCATION_SIZE], word[64], shown[64];
 	const char *text = part->cell[RESULT_OPTIONS], *other = first->cell[RESULT_OPTIONS], *which = "with";
 	size_t length;
 	const char *differs = word_of_one(text, other, &length);
@@ -112,17 +112,17 @@ static enum status other_options(const struct part *part, const struct part *fir
 	}
 	snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word), differs);
 	text_quote(word, shown, sizeof shown);
-	return error_set(error, STATUS_FORMAT, "%s: made with other options than %s: %s '%s'", place(here, part),
-			 place(there, first), which, shown);
+	return error_set(error, STATUS_FORMAT, "%s: made with other options than %s: %s '%s'", location(here, part),
+			 location(there, first), which, shown);
 }
 
 static enum status other_version(const struct part *part, const struct part *first, struct error *error)
 {
-	char here[PLACE_SIZE], there[PLACE_SIZE], version[32], other[32];
+	char here[LOCATION_SIZE], there[LOCATION_SIZE], version[32], other[32];
 	text_quote(part->cell[RESULT_VERSION], version, sizeof version);
 	text_quote(first->cell[RESULT_VERSION], other, sizeof other);
-	return error_set(error, STATUS_FORMAT, "%s: made by version '%s', but %s by '%s'", place(here, part), version,
-			 place(there, first), other);
+	return error_set(error, STATUS_FORMAT, "%s: made by version '%s', but %s by '%s'", location(here, part),
+			 version, location(there, first), other);
 }
 
 /* All rows were made with the same options by the same version. */
@@ -159,16 +159,16 @@ static enum result_column first_difference(const struct part *a, const struct pa
 static enum status check_pair(const struct merge *m, const struct part *a, const struct part *b, bool *same,
 			      struct error *error)
 {
-	char here[PLACE_SIZE], there[PLACE_SIZE];
+	char here[LOCATION_SIZE], there[LOCATION_SIZE];
 	*same = !strcmp(a->cell[RESULT_NDF], b->cell[RESULT_NDF]);
 	const bool rivals = *same || (one_row_a_file(m) && !(result_failed(a->cell) && result_failed(b->cell)));
 	const enum result_column c = rivals ? first_difference(b, a) : RESULT_COLUMNS;
 	if (c < RESULT_COLUMNS)
-		return error_set(error, STATUS_FORMAT, "%s: differs in %s from %s, of the same file", place(here, b),
-				 result_columns[c].name, place(there, a));
+		return error_set(error, STATUS_FORMAT, "%s: differs in %s from %s, of the same file", location(here, b),
+				 result_columns[c].name, location(there, a));
 	if (strcmp(a->cell[RESULT_INPUT], b->cell[RESULT_INPUT]))
 		return error_set(error, STATUS_FORMAT, "%s: made from other bytes than %s, of the same file",
-				 place(here, b), place(there, a));
+				 location(here, b), location(there, a));
 	return STATUS_OK;
 }
 
@@ -183,7 +183,7 @@ static enum status sort_parts(struct merge *m, struct error *error)
 		const struct part *last = kept ? &m->part[kept - 1] : NULL;
 		if (last && !strcmp(last->cell[RESULT_PATH], m->part[i].cell[RESULT_PATH])) {
 			const enum status status = check_pair(m, last, &m->part[i], &same, error);
-			if (status)
+			if (status != STATUS_OK)
 				return status;
 		}
 		if (!same)
@@ -204,12 +204,12 @@ static size_t next_file(const struct merge *m, size_t i)
 
 static enum status lacks(const struct part *without, const struct part *with, struct error *error)
 {
-	char path[TEXT_QUOTE_SIZE / 2], there[PLACE_SIZE], ndf[32];
+	char path[TEXT_QUOTE_SIZE / 2], there[LOCATION_SIZE], ndf[32];
 	text_quote(without->cell[RESULT_PATH], path, sizeof path);
 	text_quote(with->cell[RESULT_NDF], ndf, sizeof ndf);
 	return error_set(error, STATUS_FORMAT,
 			 "no row of '%s' for %s, as in %s: another --ndf, or a share that did not end", path, ndf,
-			 place(there, with));
+			 location(there, with));
 }
 
 /* Every file has rows of the same NDFs. */
@@ -250,7 +250,7 @@ static bool is_given(const struct files *files, const char *path)
 /* A file without a row: its share is not there, or the shares know it by another path. */
 static enum status no_row(const struct merge *m, const struct files *files, const char *path, struct error *error)
 {
-	char name[TEXT_QUOTE_SIZE / 2], other[TEXT_QUOTE_SIZE / 2], there[PLACE_SIZE];
+	char name[TEXT_QUOTE_SIZE / 2], other[TEXT_QUOTE_SIZE / 2], there[LOCATION_SIZE];
 	text_quote(path, name, sizeof name);
 	for (size_t i = 0; i < m->n; i++) {
 		const char *fitted = m->part[i].cell[RESULT_PATH];
@@ -259,7 +259,7 @@ static enum status no_row(const struct merge *m, const struct files *files, cons
 		text_quote(fitted, other, sizeof other);
 		return error_set(error, STATUS_NO_DATA,
 				 "no row of '%s', but %s is of '%s': expected the paths that were fitted", name,
-				 place(there, &m->part[i]), other);
+				 location(there, &m->part[i]), other);
 	}
 	return error_set(error, STATUS_NO_DATA, "no row of '%s': its share is missing or did not end", name);
 }
@@ -267,7 +267,7 @@ static enum status no_row(const struct merge *m, const struct files *files, cons
 /* The rows are those of these files, which are in order, and of no others. */
 static enum status check_files(const struct merge *m, const struct files *files, struct error *error)
 {
-	char name[TEXT_QUOTE_SIZE / 2], here[PLACE_SIZE];
+	char name[TEXT_QUOTE_SIZE / 2], here[LOCATION_SIZE];
 	size_t i = 0;
 	for (size_t f = 0; f < files->n || i < m->n; f++) {
 		const int order = i == m->n       ? -1
@@ -278,7 +278,7 @@ static enum status check_files(const struct merge *m, const struct files *files,
 		if (order > 0) {
 			text_quote(m->part[i].cell[RESULT_PATH], name, sizeof name);
 			return error_set(error, STATUS_FORMAT, "%s: of '%s', which is not among the files given",
-					 place(here, &m->part[i]), name);
+					 location(here, &m->part[i]), name);
 		}
 		i = next_file(m, i);
 	}
@@ -310,15 +310,15 @@ static enum status write_merged(const struct options *options, const struct merg
 static enum status merge(const struct options *options, struct merge *m, const struct files *files, struct error *error)
 {
 	enum status status = read_tables(m, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = check_origin(m, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = sort_parts(m, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = check_ndfs(m, error);
-	if (!status && files)
+	if (status == STATUS_OK && files)
 		status = check_files(m, files, error);
-	return status ? status : write_merged(options, m, error);
+	return status != STATUS_OK ? status : write_merged(options, m, error);
 }
 
 static void merge_free(struct merge *m)
@@ -363,9 +363,9 @@ int cmd_merge(int argc, char **argv, atomic_bool *cancel)
 	}
 	files_sort(&files);
 	const enum status status = merge(&options, &m, n_files ? &files : NULL, &error);
-	if (status)
+	if (status != STATUS_OK)
 		report_error("%s", error.text);
 	merge_free(&m);
 	files_free(&files);
-	return status ? EXIT_FAILED : EXIT_DONE;
+	return status != STATUS_OK ? EXIT_FAILED : EXIT_DONE;
 }

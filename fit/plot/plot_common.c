@@ -12,7 +12,7 @@ enum status plot_open(struct atomic_file *file, const char *directory, const cha
 {
 	char *path;
 	enum status status = output_directory_takes(directory, name, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	if (asprintf(&path, "%s/%s", directory, name) < 0)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
