@@ -90,7 +90,7 @@ setup:
 check: setup
 	@$(MAKE) --no-print-directory run-tests
 
-run-tests: all library $(test_programs)
+run-tests: check-includes all library $(test_programs)
 	@CC='$(CC)' OPT='$(OPT)' scripts/run_tests.sh $(BUILD) $(test_programs)
 
 # The whole suite under sanitizers, each in a build of its own. ThreadSanitizer needs clang, whose OpenMP tells it, through
