@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Targets: all (default), check, check-long, demo, bench, figures, stability, asan, ubsan, tsan, lint, valgrind, compilers, fuzz,
-# killtest, install, uninstall, dist, clean. Those that check or show something install what is missing first.
+# Targets: all (default), check, check-long, demo, bench, figures, stability, asan, ubsan, tsan, lint, architecture,
+# valgrind, compilers, fuzz, killtest, install, uninstall, dist, clean. Those that check or show something install what is missing first.
 VERSION := 0.2.0
 
 CC ?= cc
@@ -97,7 +97,7 @@ setup:
 check check-long: setup
 	@$(MAKE) --no-print-directory $(if $(filter check,$@),run-tests,run-long-tests)
 
-run-tests: all library $(short_programs)
+run-tests: check-includes all library $(short_programs)
 	@CC='$(CC)' OPT='$(OPT)' scripts/run_tests.sh $(BUILD) $(short_programs)
 
 run-long-tests: all library $(long_programs)
@@ -117,11 +117,22 @@ sanitize_tsan := -fsanitize=thread
 environment_tsan = OMP_TOOL_LIBRARIES="$$(clang -print-resource-dir)/../../libarcher.so" \
 	TSAN_OPTIONS="ignore_noninstrumented_modules=1 $$TSAN_OPTIONS"
 
-# clang-tidy, cppcheck and shellcheck over the whole tree; what they leave out stands in .clang-tidy and .cppcheck.
-lint:
+# The order of the rooms; clang-tidy, cppcheck, clang-format and shellcheck over the whole tree; what they leave out stands
+# in .clang-tidy and .cppcheck.
+lint: check-includes
+	@scripts/architecture.sh current docs/architecture.md $(folders)
 	@scripts/setup.sh $@
 	@mkdir -p $(BUILD)/include/stdfit && cp $(public_headers) $(BUILD)/include/stdfit
 	@scripts/lint.sh $(filter -D% -I%,$(ALL_CFLAGS)) -I$(BUILD)/include
+
+# Includes go from a room to those before it in `folders`, and never in a circle.
+check-includes:
+	@scripts/architecture.sh check $(folders)
+
+# The include graph in docs/architecture.md, anew; with its numbers on standard output.
+architecture:
+	@scripts/architecture.sh write docs/architecture.md $(folders)
+	@scripts/architecture.sh graph $(folders)
 
 # The program under valgrind: no leak, no wrong access.
 valgrind:
@@ -188,6 +199,6 @@ clean:
 
 include scripts/install.mk
 
-.PHONY: all setup check check-long run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo clean
+.PHONY: all setup check check-long check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo clean
 
 -include $(lib_objects:.o=.d) $(BUILD)/fit/commands/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))

@@ -62,28 +62,28 @@ void measurement_free(struct measurement *measurement)
 }
 
 /* Where entry (i, j, k) stands in degrees, all exact: the one place that knows both conventions. */
-struct place {
+struct bin_centre {
 	double theta_h_times_90, theta_d, phi_d;
 };
 
-static struct place bins_place(enum bins bins, int i, int j, int k)
+static struct bin_centre bin_centre(enum bins bins, int i, int j, int k)
 {
 	const double shift = bins == BINS_CENTRE ? 0.5 : 0.0;
 
-	return (struct place){(i + shift) * (i + shift), j + shift, k + shift};
+	return (struct bin_centre){(i + shift) * (i + shift), j + shift, k + shift};
 }
 
 struct halfdiff bins_angles(enum bins bins, int i, int j, int k)
 {
 	static const double radian = 3.14159265358979323846 / 180.0;
-	const struct place at = bins_place(bins, i, j, k);
+	const struct bin_centre at = bin_centre(bins, i, j, k);
 
 	return (struct halfdiff){at.theta_h_times_90 / 90.0 * radian, at.theta_d * radian, at.phi_d * radian};
 }
 
 struct halfdiff_trig bins_trig(enum bins bins, int i, int j, int k)
 {
-	const struct place at = bins_place(bins, i, j, k);
+	const struct bin_centre at = bin_centre(bins, i, j, k);
 	struct halfdiff_trig t;
 
 	/* theta_h is rounded, so near 90 degrees its cosine is better had from the complement, rounded by itself. */

@@ -39,17 +39,17 @@ static int read_bytes(int fd, unsigned char *bytes, size_t *size)
 	return 0;
 }
 
-enum status regular_file_read(const char *path, const char *what, size_t most, unsigned char **bytes, size_t *size,
+enum status regular_file_read(const char *path, const char *what, size_t max_size, unsigned char **bytes, size_t *size,
 			      struct error *why)
 {
 	struct stat st;
 	int fd;
 	*bytes = NULL;
 	enum status status = regular_file_open(path, what, &fd, &st, why);
-	if (!status && (unsigned long long)st.st_size > most)
-		status = error_set(why, STATUS_FORMAT, "expected at most %zu bytes, found %lld", most,
+	if (status == STATUS_OK && (unsigned long long)st.st_size > max_size)
+		status = error_set(why, STATUS_FORMAT, "expected at most %zu bytes, found %lld", max_size,
 				   (long long)st.st_size);
-	if (!status) {
+	if (status == STATUS_OK) {
 		*size = (size_t)st.st_size;
 		*bytes = malloc(*size);
 		if (!*bytes)

@@ -12,9 +12,9 @@
 MUST_CHECK enum status regular_file_open(const char *path, const char *what, int *fd, struct stat *st,
 					 struct error *why);
 
-/* regular_file_read - the whole of a file of at most `most` bytes, newly allocated, into *bytes and *size.
+/* regular_file_read - the whole of a file of at most `max_size` bytes, newly allocated, into *bytes and *size.
  * Returns STATUS_IO, STATUS_FORMAT, STATUS_NO_MEMORY; *bytes is then NULL. */
-MUST_CHECK enum status regular_file_read(const char *path, const char *what, size_t most, unsigned char **bytes,
+MUST_CHECK enum status regular_file_read(const char *path, const char *what, size_t max_size, unsigned char **bytes,
 					 size_t *size, struct error *why);
 
 #endif

@@ -44,7 +44,8 @@ static bool reserve(char **text, size_t *capacity, size_t size)
 	return true;
 }
 
-static enum status read_stream(FILE *file, const char *what, size_t most, char **text, size_t *size, struct error *why)
+static enum status read_stream(FILE *file, const char *what, size_t max_size, char **text, size_t *size,
+			       struct error *why)
 {
 	size_t capacity = 0, got;
 	*size = 0;
@@ -56,25 +57,25 @@ static enum status read_stream(FILE *file, const char *what, size_t most, char *
 		if (memchr(to, '\0', got))
 			return error_set(why, STATUS_FORMAT, "expected text, found a zero byte");
 		*size += got;
-	} while (got && *size <= most);
+	} while (got && *size <= max_size);
 	if (ferror(file))
 		return error_set(why, STATUS_IO, "%s", strerror(errno));
-	if (*size > most)
+	if (*size > max_size)
 		return error_set(why, STATUS_FORMAT, "too large for %s", what);
 	(*text)[*size] = '\0';
 	return STATUS_OK;
 }
 
-enum status text_file_read(const char *path, const char *what, size_t most, char **text, size_t *size,
+enum status text_file_read(const char *path, const char *what, size_t max_size, char **text, size_t *size,
 			   struct error *why)
 {
 	FILE *file = open_text(path);
 	*text = NULL;
 	if (!file)
 		return errno == ENOMEM ? no_memory(why) : error_set(why, STATUS_IO, "%s", strerror(errno));
-	const enum status status = read_stream(file, what, most, text, size, why);
+	const enum status status = read_stream(file, what, max_size, text, size, why);
 	fclose(file);
-	if (status) {
+	if (status != STATUS_OK) {
 		free(*text);
 		*text = NULL;
 	}

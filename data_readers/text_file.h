@@ -6,11 +6,11 @@
 #include "src/status.h"
 #include <stddef.h>
 
-/* text_file_read - the text of a file of at most `most` bytes, newly allocated, terminated, into *text, and its length into
+/* text_file_read - the text of a file of at most `max_size` bytes, newly allocated, terminated, into *text, its length into
  * *size. A pipe that nobody writes to is empty, and not waited for.
  * Errors, which do not name the file: STATUS_IO, STATUS_NO_MEMORY, STATUS_FORMAT (a zero byte; too large, `what` being
  * what it should be, "a result table"); *text is NULL then. */
-MUST_CHECK enum status text_file_read(const char *path, const char *what, size_t most, char **text, size_t *size,
+MUST_CHECK enum status text_file_read(const char *path, const char *what, size_t max_size, char **text, size_t *size,
 				      struct error *why);
 
 #endif

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # usage: lint.sh FLAG...
-# Runs clang-tidy and cppcheck over all C files, with the flags -D and -I of the build, and shellcheck over the scripts. Fails
-# if any of them finds something.
+# Runs clang-tidy and cppcheck over all C files, with the flags -D and -I of the build, clang-format, which changes nothing,
+# over these and the headers, and shellcheck over the scripts. Fails if any of them finds something.
 set -eu
 
 files=$(find src data_readers fit tests -name '*.c')
@@ -16,5 +16,6 @@ clang-tidy --quiet src/status.c -- -std=c11 "$@" || status=1
 # shellcheck disable=SC2086
 cppcheck --quiet --std=c11 --error-exitcode=1 --enable=warning,style,performance,portability --inline-suppr \
 	--suppressions-list=.cppcheck -j "$jobs" -Itests "$@" $files || status=1
+find src data_readers fit tests -name '*.[ch]' -exec clang-format --dry-run -Werror {} + || status=1
 shellcheck scripts/*.sh tests/*.sh || status=1
 exit $status

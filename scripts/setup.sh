@@ -13,7 +13,10 @@ optional='libpng-dev gnuplot-nox'
 tools=
 case $target in
 '') ;;
-lint) tools='clang clang-tidy cppcheck shellcheck' packages="$packages clang clang-tidy libomp-dev cppcheck shellcheck" ;;
+lint)
+	tools='clang clang-tidy clang-format cppcheck shellcheck'
+	packages="$packages clang clang-tidy clang-format libomp-dev cppcheck shellcheck"
+	;;
 tsan | compilers | fuzz) tools='clang' packages="$packages clang libclang-rt-dev libomp-dev" ;;
 valgrind) tools='valgrind' packages="$packages valgrind" ;;
 *)

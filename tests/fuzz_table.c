@@ -154,7 +154,7 @@ static void check_same(const struct csv_table *a, const struct csv_table *b)
 static void check_written(const struct csv_table *rows)
 {
 	struct csv_table back = empty_table();
-	char *json = as_text(report_json, rows), *csv = as_text(report_csv, rows);
+	char *json = as_text(report_json, rows), *csv = as_text(csv_write, rows);
 	struct error error;
 	PROMISE(json_is_valid(json));
 	write_file(csv, strlen(csv));

@@ -65,7 +65,7 @@ static void write_table(const char *path, const struct model_source *source)
 
 		assert_int_equal(result_add(&table, &from, &m->fit, &result), STATUS_OK);
 	}
-	report_csv(file, &table);
+	csv_write(file, &table);
 	assert_int_equal(fclose(file), 0);
 	csv_table_free(&table);
 }

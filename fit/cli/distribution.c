@@ -78,20 +78,21 @@ static enum status make_pl(const struct distribution_words *words, struct distri
 {
 	double D[FREE_FORM_VALUES];
 	enum status status = check_params(words->params, is_node, NULL, error);
-	for (int i = 0; i < FREE_FORM_VALUES && !status; i++) {
+	for (int i = 0; i < FREE_FORM_VALUES && status == STATUS_OK; i++) {
 		char name[16];
 		snprintf(name, sizeof name, "D%d", i);
 		if (!given(words->params) || !result_param(words->params, name, &D[i]))
 			status = error_set(error, STATUS_DOMAIN, "pl needs the parameters D0 to D%d: %s is missing",
 					   FREE_FORM_VALUES - 1, name);
 	}
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	distribution->pwl = calloc(1, sizeof *distribution->pwl);
 	status = distribution->pwl ? free_form_pwl(BINS_NODE, D, distribution->pwl) : STATUS_NO_MEMORY;
-	if (!status)
+	if (status == STATUS_OK)
 		ndf_from_pwl(&distribution->ndf, distribution->pwl);
-	return status ? error_set(error, status, "pl takes no such values: %s", status_str(status)) : STATUS_OK;
+	return status != STATUS_OK ? error_set(error, status, "pl takes no such values: %s", status_str(status))
+				   : STATUS_OK;
 }
 
 /* The ellipsoid */
@@ -110,7 +111,7 @@ static enum status make_ellipsoid(const struct distribution_words *words, double
 {
 	double value[5] = {sigma_x, sigma_y, 0, 0, 0};
 	const enum status status = check_params(words->params, is_of_ellipsoid, NULL, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	for (int i = 0; i < 5 && given(words->params); i++)
 		(void)result_param(words->params, ellipsoid_params[i], &value[i]);
@@ -167,7 +168,7 @@ static enum status make_class(const struct distribution_words *words, const stru
 			      double sigma_y, double gamma, struct ndf *ndf, struct error *error)
 {
 	enum status status = check_params(words->params, is_of_class, class, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	if (given(words->params) && sigma_x != sigma_y && !isnan(sigma_x))
 		return error_set(error, STATUS_DOMAIN, "params and two values of sigma do not go together");
@@ -201,11 +202,11 @@ static enum status make(const struct distribution_words *words, struct distribut
 	const struct ndf_class *class = ndf_find(words->name);
 	double sigma_x, sigma_y, gamma;
 	enum status status = number("sigma", words->sigma, NAN, &sigma_x, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = number("sigma_y", words->sigma_y, sigma_x, &sigma_y, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = number("gamma", words->gamma, NAN, &gamma, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	distribution->name = class ? ndf_name(class) : "ellipsoid";
 	if (words->name && !strcmp(words->name, "ellipsoid"))
@@ -217,7 +218,7 @@ static enum status make(const struct distribution_words *words, struct distribut
 	}
 	status = ndf_is_tabulated(class) ? make_pl(words, distribution, error)
 					 : make_class(words, class, sigma_x, sigma_y, gamma, &distribution->ndf, error);
-	return status ? status : set_lambda(words->lambda, &distribution->ndf, error);
+	return status != STATUS_OK ? status : set_lambda(words->lambda, &distribution->ndf, error);
 }
 
 enum status distribution_make(const struct distribution_words *words, struct distribution *distribution,
@@ -225,7 +226,7 @@ enum status distribution_make(const struct distribution_words *words, struct dis
 {
 	*distribution = (struct distribution){0};
 	const enum status status = make(words, distribution, error);
-	if (status)
+	if (status != STATUS_OK)
 		distribution_free(distribution);
 	return status;
 }

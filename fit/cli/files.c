@@ -49,30 +49,30 @@ static int id_order(const void *a, const void *b)
 /* The directories that a walk has seen: links can lead to the same one in more ways than there is time to go. A hash
  * table, of a power of two slots, at least half of them free (inode 0). */
 struct seen {
-	struct id *slot;
+	struct id *entry;
 	size_t n, capacity;
 };
 
-static struct id *seen_slot(const struct seen *seen, struct id id)
+static struct id *seen_entry(const struct seen *seen, struct id id)
 {
 	size_t at = (size_t)(((uint64_t)id.inode * 0x9e3779b97f4a7c15u) >> 32);
 	for (;; at++) {
-		struct id *slot = &seen->slot[at & (seen->capacity - 1)];
-		if (!slot->inode || !id_order(slot, &id))
-			return slot;
+		struct id *entry = &seen->entry[at & (seen->capacity - 1)];
+		if (!entry->inode || !id_order(entry, &id))
+			return entry;
 	}
 }
 
 static bool seen_grow(struct seen *seen)
 {
 	struct seen grown = {.n = seen->n, .capacity = seen->capacity ? 2 * seen->capacity : 64};
-	grown.slot = calloc(grown.capacity, sizeof(*grown.slot));
-	if (!grown.slot)
+	grown.entry = calloc(grown.capacity, sizeof(*grown.entry));
+	if (!grown.entry)
 		return false;
 	for (size_t i = 0; i < seen->capacity; i++)
-		if (seen->slot[i].inode)
-			*seen_slot(&grown, seen->slot[i]) = seen->slot[i];
-	free(seen->slot);
+		if (seen->entry[i].inode)
+			*seen_entry(&grown, seen->entry[i]) = seen->entry[i];
+	free(seen->entry);
 	*seen = grown;
 	return true;
 }
@@ -83,10 +83,10 @@ static int seen_note(struct seen *seen, const struct stat *info)
 	const struct id id = {info->st_dev, info->st_ino};
 	if (2 * seen->n >= seen->capacity && !seen_grow(seen))
 		return -1;
-	struct id *slot = seen_slot(seen, id);
-	if (slot->inode)
+	struct id *entry = seen_entry(seen, id);
+	if (entry->inode)
 		return 0;
-	*slot = id;
+	*entry = id;
 	seen->n++;
 	return 1;
 }
@@ -177,7 +177,7 @@ static int add_directory(struct files *files, const char *path, const struct sta
 	const size_t before = files->n;
 	struct walk walk = {.files = files, .recursive = recursive, .cancel = cancel};
 	const bool stored = seen_note(&walk.seen, info) >= 0 && walk_directory(&walk, path);
-	free(walk.seen.slot);
+	free(walk.seen.entry);
 	if (stored && !walk.problems && files->n == before && !*cancel) {
 		cannot_read(path, "no *.binary in this directory");
 		walk.problems++;
@@ -185,14 +185,14 @@ static int add_directory(struct files *files, const char *path, const struct sta
 	return stored ? walk.problems : -1;
 }
 
-struct place {
+struct indexed_path {
 	char *path;
 	size_t index;
 };
 
-static int place_order(const void *a, const void *b)
+static int indexed_path_order(const void *a, const void *b)
 {
-	const struct place *x = a, *y = b;
+	const struct indexed_path *x = a, *y = b;
 	const int order = strcmp(x->path, y->path);
 	return order ? order : (x->index > y->index) - (x->index < y->index);
 }
@@ -200,24 +200,24 @@ static int place_order(const void *a, const void *b)
 /* Leaves the first of equal paths. */
 static bool drop_repeated(struct files *files)
 {
-	struct place *place = calloc(files->n + 1, sizeof(*place));
-	if (!place)
+	struct indexed_path *indexed = calloc(files->n + 1, sizeof(*indexed));
+	if (!indexed)
 		return false;
 	for (size_t i = 0; i < files->n; i++)
-		place[i] = (struct place){files->path[i], i};
-	qsort(place, files->n, sizeof(*place), place_order);
+		indexed[i] = (struct indexed_path){files->path[i], i};
+	qsort(indexed, files->n, sizeof(*indexed), indexed_path_order);
 	for (size_t i = files->n; i-- > 1;) {
-		if (strcmp(place[i].path, place[i - 1].path))
+		if (strcmp(indexed[i].path, indexed[i - 1].path))
 			continue;
-		files->path[place[i].index] = NULL;
-		free(place[i].path);
+		files->path[indexed[i].index] = NULL;
+		free(indexed[i].path);
 	}
 	size_t kept = 0;
 	for (size_t i = 0; i < files->n; i++)
 		if (files->path[i])
 			files->path[kept++] = files->path[i];
 	files->n = kept;
-	free(place);
+	free(indexed);
 	return true;
 }
 

@@ -52,11 +52,11 @@ static enum status read_map(const char *path, struct environment *environment, s
 	struct image map;
 	struct error why;
 	enum status status = image_read(path, &map, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	status = environment_from_map(environment, &map, &why);
 	image_free(&map);
-	if (!status)
+	if (status == STATUS_OK)
 		return STATUS_OK;
 	char name[TEXT_QUOTE_SIZE];
 	text_quote(path, name, sizeof name);
@@ -72,11 +72,11 @@ enum status lighting_make(const struct options *options, struct environment *env
 		status = environment_named(options->environment, environment);
 	if (status == STATUS_DOMAIN)
 		status = read_map(options->environment, environment, error);
-	else if (status)
+	else if (status != STATUS_OK)
 		error_set(error, status, "%s", status_str(status));
-	if (!status && options->light)
+	if (status == STATUS_OK && options->light)
 		status = add_lights(options->light, environment, error);
-	if (status)
+	if (status != STATUS_OK)
 		environment_free(environment);
 	else
 		environment_scale(environment, exp2(options->exposure));

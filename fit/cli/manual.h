@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* manual - the manual page stdfit(1), made from the tables that parsing and --help use. */
+/* manual - the manual page stdfit(1), made from the tables that parsing and --help use.
+ * Written by hand: the text comes from the same tables, and man(7) needs no more than a few macros. */
 #ifndef MANUAL_H
 #define MANUAL_H
 

@@ -67,15 +67,28 @@ const char *output_place_trouble(int at, const char *name)
 				     : "expected a file or nothing there, found a pipe or device";
 }
 
+enum status output_directory_path(const char *directory, const char *name, char **path, struct error *error)
+{
+	char shown[TEXT_QUOTE_SIZE];
+	if (asprintf(path, "%s/%s", directory, name) < 0) {
+		*path = NULL;
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	}
+	const char *trouble = output_place_trouble(AT_FDCWD, *path);
+	if (!trouble)
+		return STATUS_OK;
+	text_quote(*path, shown, sizeof shown);
+	free(*path);
+	*path = NULL;
+	return error_set(error, STATUS_IO, "cannot write '%s': %s", shown, trouble);
+}
+
 enum status output_directory_takes(const char *directory, const char *name, struct error *error)
 {
-	char *path, shown[TEXT_QUOTE_SIZE];
-	if (asprintf(&path, "%s/%s", directory, name) < 0)
-		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	const char *trouble = output_place_trouble(AT_FDCWD, path);
-	text_quote(path, shown, sizeof shown);
+	char *path;
+	const enum status status = output_directory_path(directory, name, &path, error);
 	free(path);
-	return trouble ? error_set(error, STATUS_IO, "cannot write '%s': %s", shown, trouble) : STATUS_OK;
+	return status;
 }
 
 enum status scratch_make(const char *path, struct scratch *scratch, struct error *error)

@@ -16,6 +16,8 @@ MUST_CHECK enum status output_directory_make(const char *path, const char *below
 MUST_CHECK enum status output_directory_spares(const char *directory, const char *name, char *const *path, int n,
 					       struct error *error);
 
+/* output_directory_path - "directory/name" in *path, newly allocated, if output_directory_takes() that name; else NULL. */
+MUST_CHECK enum status output_directory_path(const char *directory, const char *name, char **path, struct error *error);
 /* output_directory_takes - whether NAME in the directory can become a file: nothing stands there, or a regular file. Who
  * writes to a pipe waits for its reader; that is no place for one file of several.
  * Errors: STATUS_IO: something else is there; STATUS_NO_MEMORY. */

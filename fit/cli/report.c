@@ -2,14 +2,11 @@
 #include "fit/cli/report.h"
 #include "data_readers/text_quote.h"
 #include "fit/results/result.h"
-#include "fit/search/search.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 void report_error(const char *format, ...)
 {
@@ -65,13 +62,6 @@ void report_json(FILE *file, const struct csv_table *table)
 		fputs("}", file);
 	}
 	fputs("\n]\n", file);
-}
-
-void report_csv(FILE *file, const struct csv_table *table)
-{
-	csv_write_header(file, table->column, table->n_columns);
-	for (size_t i = 0; i < table->n_rows; i++)
-		csv_write_row(file, table->row[i], table->n_columns);
 }
 
 /* Readable tables */
@@ -149,7 +139,7 @@ void report_output(const struct csv_table *table, enum show show, report_readabl
 	else if (show == SHOW_READABLE)
 		readable(stdout, table);
 	else if (show == SHOW_CSV)
-		report_csv(stdout, table);
+		csv_write(stdout, table);
 }
 
 /* Three factors in one column; one number if they are equal, as those of a gray model are. */
@@ -216,35 +206,4 @@ void report_fits(FILE *file, const struct csv_table *results, bool heading)
 			"gamma", "n", "kd", "ks", "at bound");
 	for (size_t i = 0; i < results->n_rows; i++)
 		print_fit(file, results->row[i]);
-}
-
-/* Progress */
-
-struct progress progress_start(size_t n, const char *unit, bool quiet)
-{
-	const double now = search_clock();
-	return (struct progress){.shown = !quiet && n > 1 && isatty(STDERR_FILENO), .n = n, .unit = unit, .start = now};
-}
-
-void progress_draw(struct progress *progress)
-{
-	const double now = search_clock();
-	if (!progress->shown || now - progress->drawn < 1.0 / 6)
-		return;
-	progress->drawn = now;
-	fprintf(stderr, "\r%zu of %zu %s", progress->done, progress->n, progress->unit);
-	if (progress->done) {
-		const double each = (now - progress->start) / (double)progress->done;
-		const long left = lrint(each * (double)(progress->n - progress->done));
-		fprintf(stderr, ", %ld:%02ld left", left / 60, left % 60);
-	}
-	fputs("\033[K", stderr);
-}
-
-void progress_erase(struct progress *progress)
-{
-	if (!progress->shown || progress->drawn <= 0)
-		return;
-	fputs("\r\033[K", stderr);
-	progress->drawn = 0;
 }

@@ -16,16 +16,16 @@
 #include <string.h>
 #include <unistd.h>
 
-/* When one looks who is where. */
-static const double look_s[] = {0.1, 0.3, 1, 3, 10};
-enum { LOOKS = sizeof look_s / sizeof *look_s };
+/* The seconds after which the algorithms are compared. */
+static const double checkpoint_s[] = {0.1, 0.3, 1, 3, 10};
+enum { CHECKPOINTS = sizeof checkpoint_s / sizeof *checkpoint_s };
 
 enum bench_column {
 	BENCH_MATERIAL,
 	BENCH_NDF,
 	BENCH_ALGORITHM,
-	BENCH_LOOK,
-	BENCH_ERROR = BENCH_LOOK + LOOKS,
+	BENCH_CHECKPOINT,
+	BENCH_ERROR = BENCH_CHECKPOINT + CHECKPOINTS,
 	BENCH_EVALUATIONS,
 	BENCH_SECONDS,
 	BENCH_COLUMNS
@@ -35,7 +35,7 @@ static const struct csv_column columns[BENCH_COLUMNS] = {
 	[BENCH_MATERIAL] = {"material", false},
 	[BENCH_NDF] = {"ndf", false},
 	[BENCH_ALGORITHM] = {"algorithm", false},
-	[BENCH_LOOK] = {"error_0.1s", true},
+	[BENCH_CHECKPOINT] = {"error_0.1s", true},
 	{"error_0.3s", true},
 	{"error_1s", true},
 	{"error_3s", true},
@@ -129,7 +129,7 @@ static enum status run_one(struct bench *b, const struct algorithm *algorithm, s
 	fit.trace_data = curve;
 	curve->begin_s = search_clock();
 	const enum status status = fit_run(b->context, &b->measurement, &fit, &result, &b->error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	const struct cook_torrance *m = &result.model;
 	const struct fit_trace end = {.ndf = fit.ndf[0],
@@ -156,10 +156,10 @@ static enum status judge(struct bench *b, struct curve *curve)
 	struct objective objective;
 	struct linear linear;
 	enum status status = STATUS_OK;
-	for (int i = 0; i < FIT_NDFS_MAX && curve->ndf[i] && !status; i++) {
+	for (int i = 0; i < FIT_NDFS_MAX && curve->ndf[i] && status == STATUS_OK; i++) {
 		ready = curve->ndf[i];
 		status = objective_init(&objective, &b->full, &b->options->fit, ready, 1, MASKING_COARSE);
-		for (size_t n = 0; n < curve->trace.n && !status; n++) {
+		for (size_t n = 0; n < curve->trace.n && status == STATUS_OK; n++) {
 			struct fit_trace *p = &curve->trace.point[n];
 			const struct shape shape = {p->sigma, p->gamma, p->ior, p->k};
 			if (*b->options->cancel)
@@ -211,9 +211,9 @@ static enum status add_row(struct bench *b, const struct algorithm *algorithm, c
 					[BENCH_SECONDS] = end->seconds};
 	char text[BENCH_COLUMNS][CSV_NUMBER_SIZE];
 	const char *cell[BENCH_COLUMNS] = {b->material, ndf_name(end->ndf), algorithm_name(algorithm)};
-	for (int i = 0; i < LOOKS; i++)
-		number[BENCH_LOOK + i] = error_after(b, trace, look_s[i]);
-	for (int c = BENCH_LOOK; c < BENCH_COLUMNS; c++)
+	for (int i = 0; i < CHECKPOINTS; i++)
+		number[BENCH_CHECKPOINT + i] = error_after(b, trace, checkpoint_s[i]);
+	for (int c = BENCH_CHECKPOINT; c < BENCH_COLUMNS; c++)
 		cell[c] = csv_number(text[c], number[c]);
 	if (csv_table_add(&b->output, cell))
 		return error_set(&b->error, STATUS_NO_MEMORY, "out of memory");
@@ -221,7 +221,7 @@ static enum status add_row(struct bench *b, const struct algorithm *algorithm, c
 }
 
 /* Says on a terminal what is running. */
-static void tell(const struct bench *b, int i, int n, const char *name)
+static void report_progress(const struct bench *b, int i, int n, const char *name)
 {
 	if (!b->options->quiet && isatty(STDERR_FILENO))
 		fprintf(stderr, "\r%d of %d: %s\033[K", i + 1, n, name);
@@ -237,15 +237,15 @@ static enum status run_algorithm(struct bench *b, const struct algorithm *algori
 {
 	struct curve curve = {.begin_s = 0};
 	enum status status = run_one(b, algorithm, &curve);
-	if (!status && curve.trace.incomplete)
+	if (status == STATUS_OK && curve.trace.incomplete)
 		status = error_set(&b->error, STATUS_NO_MEMORY, "out of memory");
-	if (!status)
+	if (status == STATUS_OK)
 		status = judge(b, &curve);
-	if (!status) {
+	if (status == STATUS_OK) {
 		keep_best(b, &curve.trace);
 		status = add_row(b, algorithm, &curve.trace);
 	}
-	if (!status && b->options->trace)
+	if (status == STATUS_OK && b->options->trace)
 		trace_write(b->trace.stream, b->material, algorithm_name(algorithm), &curve.trace);
 	trace_free(&curve.trace);
 	return status;
@@ -255,11 +255,11 @@ static enum status read_file(struct bench *b)
 {
 	const struct options *options = b->options;
 	enum status status = merl_read(options->path[0], options->fit.threads, &b->measurement, &b->error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	b->material = result_material(options->path[0]);
 	status = b->material ? fit_context_new(&b->context, b->measurement.n_phi_d, &options->fit) : STATUS_NO_MEMORY;
-	return status ? error_set(&b->error, status, "%s", status_str(status)) : STATUS_OK;
+	return status != STATUS_OK ? error_set(&b->error, status, "%s", status_str(status)) : STATUS_OK;
 }
 
 static enum status prepare(struct bench *b)
@@ -272,32 +272,32 @@ static enum status prepare(struct bench *b)
 	for (int i = 0; i < ALGORITHM_COUNT && !options->n_algorithms; i++)
 		b->algorithm[b->n_algorithms++] = algorithm_at(i);
 	enum status status = read_file(b);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	status = geometry_init(&b->geometry, b->measurement.n_phi_d, fit);
-	if (!status)
+	if (status == STATUS_OK)
 		status = sample_set_init(&b->full, &b->geometry, &b->measurement, fit->threads);
 	if (status == STATUS_NO_DATA)
 		return error_set(&b->error, status, "no entry to fit: expected some valid ones that are not all zero");
-	return status ? error_set(&b->error, status, "%s", status_str(status)) : STATUS_OK;
+	return status != STATUS_OK ? error_set(&b->error, status, "%s", status_str(status)) : STATUS_OK;
 }
 
 static enum status run_all(struct bench *b)
 {
 	const char *trace = b->options->trace;
 	enum status status = prepare(b);
-	if (!status && trace)
+	if (status == STATUS_OK && trace)
 		status = atomic_file_open(&b->trace, trace, &b->error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	if (trace)
 		csv_write_header(b->trace.stream, trace_columns, TRACE_COLUMNS);
-	for (int i = 0; i < b->n_algorithms && !status; i++) {
-		tell(b, i, b->n_algorithms, algorithm_name(b->algorithm[i]));
+	for (int i = 0; i < b->n_algorithms && status == STATUS_OK; i++) {
+		report_progress(b, i, b->n_algorithms, algorithm_name(b->algorithm[i]));
 		status = run_algorithm(b, b->algorithm[i]);
 	}
 	tell_no_more(b);
-	if (!status && trace)
+	if (status == STATUS_OK && trace)
 		status = atomic_file_commit(&b->trace, &b->error);
 	return status;
 }
@@ -309,10 +309,10 @@ static enum status eval_exact(struct bench *b, const struct fit_result *result, 
 	struct cook_torrance model = result->model;
 	struct fit_metrics metrics;
 	enum status status = ndf_set_lambda_form(&model.ndf, LAMBDA_EXACT);
-	if (status)
+	if (status != STATUS_OK)
 		return error_set(&b->error, status, "%s", status_str(status));
 	status = fit_eval(&b->measurement, &model, fit, &metrics, &b->error);
-	if (!status)
+	if (status == STATUS_OK)
 		*error = metrics.error[fit->criterion.weight];
 	return status;
 }
@@ -329,7 +329,7 @@ static enum status add_form(struct bench *b, enum lambda_form form, const struct
 	if (result) {
 		const struct cook_torrance *m = &result->model;
 		const enum status status = eval_exact(b, result, &number[FORMS_ERROR_EXACT]);
-		if (status)
+		if (status != STATUS_OK)
 			return status;
 		number[FORMS_ERROR] = result->error;
 		number[FORMS_SIGMA] = m->ndf.sigma_x;
@@ -362,7 +362,7 @@ static enum status run_form(struct bench *b, enum lambda_form form)
 		b->incomplete = true;
 		return add_form(b, form, NULL);
 	}
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	status = add_form(b, form, &result);
 	fit_result_free(&result);
@@ -372,8 +372,8 @@ static enum status run_form(struct bench *b, enum lambda_form form)
 static enum status run_forms(struct bench *b)
 {
 	enum status status = read_file(b);
-	for (int i = 0; i < LAMBDA_FORM_COUNT && !status; i++) {
-		tell(b, i, LAMBDA_FORM_COUNT, lambda_form_name((enum lambda_form)i));
+	for (int i = 0; i < LAMBDA_FORM_COUNT && status == STATUS_OK; i++) {
+		report_progress(b, i, LAMBDA_FORM_COUNT, lambda_form_name((enum lambda_form)i));
 		status = run_form(b, (enum lambda_form)i);
 	}
 	tell_no_more(b);
@@ -429,7 +429,7 @@ int cmd_bench(int argc, char **argv, atomic_bool *cancel)
 						  : csv_table_make(columns, BENCH_COLUMNS)};
 	const enum status status = options.forms ? run_forms(&b) : run_all(&b);
 	/* An interrupted bench shows what it came to. */
-	if (!status || *cancel)
+	if (status == STATUS_OK || *cancel)
 		report_output(&b.output, options_show(&options), report_table);
 	else
 		report_error("%s", b.error.text);

@@ -176,7 +176,7 @@ static void add_pictures(struct comparison *c, char **const *rows, size_t n, dou
 		number[first + c->n_ndf + ndf] = errors[i].ssim;
 	}
 	free(errors);
-	if (status && status != STATUS_INTERRUPTED)
+	if (status != STATUS_OK && status != STATUS_INTERRUPTED)
 		report_error("%s", error.text);
 	c->n_failed += status != STATUS_OK;
 }
@@ -265,20 +265,20 @@ static enum status write_output(const struct options *options, const struct csv_
 	report_output(table, options_show(options), report_table);
 	if (!options->output)
 		return STATUS_OK;
-	return store_write(options->output, table, options->json ? report_json : report_csv, error);
+	return store_write(options->output, table, options->json ? report_json : csv_write, error);
 }
 
 static enum status fill_table(struct comparison *c, struct csv_table *rows, struct error *error)
 {
 	enum status status = c->pictures ? environment_named("studio", &c->light) : STATUS_OK;
 	set_relations(c);
-	if (!status)
+	if (status == STATUS_OK)
 		status = name_columns(c, rows->n_rows);
-	if (!status)
+	if (status == STATUS_OK)
 		status = add_materials(c, rows);
-	if (!status)
+	if (status == STATUS_OK)
 		status = add_summary(c);
-	return status ? error_set(error, status, "%s", status_str(status)) : STATUS_OK;
+	return status != STATUS_OK ? error_set(error, status, "%s", status_str(status)) : STATUS_OK;
 }
 
 /* Compares the rows, which get reordered, and writes the outcome. Returns the exit code. */
@@ -287,11 +287,11 @@ static int compare(const struct options *options, struct csv_table *rows)
 	struct comparison c = {.options = options, .pictures = options->pictures};
 	struct error error;
 	enum status status = collect_ndfs(&c, rows, &error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = fill_table(&c, rows, &error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = write_output(options, &c.table, &error);
-	if (status && status != STATUS_INTERRUPTED)
+	if (status != STATUS_OK && status != STATUS_INTERRUPTED)
 		report_error("%s", error.text);
 	comparison_free(&c);
 	if (status == STATUS_INTERRUPTED)
@@ -327,9 +327,9 @@ static int compare_table(const struct options *options)
 		return options_usage(COMMAND_COMPARE, "expected one table and nothing beside it, found %d paths",
 				     options->n_paths);
 	enum status status = csv_table_read(&rows, path, RESULT_ERROR + 1, NULL, &error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = check_rows(&rows, path, &error);
-	if (status)
+	if (status != STATUS_OK)
 		report_error("%s", error.text);
 	const int code = status ? EXIT_FAILED : compare(options, &rows);
 	csv_table_free(&rows);
@@ -352,19 +352,22 @@ static int compare_fits(const struct options *options)
 		return replaces ? EXIT_USAGE : EXIT_FAILED;
 	}
 	enum status status = options->output ? store_probe(options->output, &error) : STATUS_OK;
-	int code = *options->cancel ? EXIT_INTERRUPTED : files.n && !status ? batch_run(&batch) : EXIT_FAILED;
-	for (size_t i = 0; i < batch.n && !status; i++)
+	int code = *options->cancel                 ? EXIT_INTERRUPTED
+		   : files.n && status == STATUS_OK ? batch_run(&batch)
+						    : EXIT_FAILED;
+	for (size_t i = 0; i < batch.n && status == STATUS_OK; i++)
 		if (csv_table_move(&rows, &batch.file[i].rows))
 			status = error_set(&error, STATUS_NO_MEMORY, "out of memory");
-	if (status)
+	if (status != STATUS_OK)
 		report_error("%s", error.text);
-	const int compared = !status && rows.n_rows && code != EXIT_INTERRUPTED ? compare(options, &rows) : EXIT_DONE;
+	const int compared =
+		status == STATUS_OK && rows.n_rows && code != EXIT_INTERRUPTED ? compare(options, &rows) : EXIT_DONE;
 	csv_table_free(&rows);
 	batch_free(&batch);
 	files_free(&files);
 	if (compared != EXIT_DONE)
 		return compared;
-	return code == EXIT_DONE && (bad || status) ? EXIT_FAILED : code;
+	return code == EXIT_DONE && (bad || status != STATUS_OK) ? EXIT_FAILED : code;
 }
 
 int cmd_compare(int argc, char **argv, atomic_bool *cancel)

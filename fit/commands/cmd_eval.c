@@ -4,7 +4,7 @@
 #include "data_readers/text_quote.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
-#include "fit/results/balance.h"
+#include "fit/results/energy_conservation.h"
 #include "fit/sources/model_source.h"
 
 enum eval_column {
@@ -53,12 +53,12 @@ static enum status evaluate(struct evaluation *e, const struct source_model *sou
 	struct fit_metrics m;
 	struct error why;
 	const enum status status = fit_eval(&e->measurement, &source->model, &source->fit, &m, &why);
-	if (status) {
+	if (status != STATUS_OK) {
 		char name[TEXT_QUOTE_SIZE];
 		text_quote(e->path, name, sizeof name);
 		return error_set(error, status, "cannot compare with '%s': %.200s", name, why.text);
 	}
-	const struct balance balance = balance_of(&source->model);
+	const struct energy_conservation energy = energy_conservation_of(&source->model);
 	const double number[EVAL_COLUMNS] = {
 		[EVAL_NONE] = m.error[WEIGHT_NONE],
 		[EVAL_COSINE] = m.error[WEIGHT_COSINE],
@@ -67,16 +67,16 @@ static enum status evaluate(struct evaluation *e, const struct source_model *sou
 		[EVAL_RMS_CUBE_ROOT] = m.rms_cube_root,
 		[EVAL_LOG] = m.log_error,
 		[EVAL_SAMPLES] = (double)m.samples,
-		[EVAL_ALBEDO_R] = balance.albedo[0],
-		[EVAL_ALBEDO_G] = balance.albedo[1],
-		[EVAL_ALBEDO_B] = balance.albedo[2],
-		[EVAL_FURNACE] = balance_furnace(&source->model),
+		[EVAL_ALBEDO_R] = energy.albedo[0],
+		[EVAL_ALBEDO_G] = energy.albedo[1],
+		[EVAL_ALBEDO_B] = energy.albedo[2],
+		[EVAL_FURNACE] = energy_conservation_furnace(&source->model),
 	};
 	char text[EVAL_COLUMNS][CSV_NUMBER_SIZE];
 	const char *cell[EVAL_COLUMNS] = {e->path, ndf_name(source->model.ndf.class)};
 	for (int c = EVAL_NONE; c < EVAL_ENERGY; c++)
 		cell[c] = csv_number(text[c], number[c]);
-	cell[EVAL_ENERGY] = balance_name(&balance);
+	cell[EVAL_ENERGY] = energy_conservation_name(&energy);
 	if (csv_table_add(&e->output, cell))
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	return STATUS_OK;
@@ -86,11 +86,11 @@ static enum status evaluate_all(struct evaluation *e, const struct options *opti
 {
 	struct model_source source;
 	enum status status = merl_read(e->path, options->fit.threads, &e->measurement, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = model_source_read(options, e->path, &source, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
-	for (size_t i = 0; i < source.n && !status; i++)
+	for (size_t i = 0; i < source.n && status == STATUS_OK; i++)
 		status = evaluate(e, &source.model[i], error);
 	model_source_free(&source);
 	return status;

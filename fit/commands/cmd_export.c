@@ -39,7 +39,7 @@ static enum status find_samples(const struct options *options, const struct sour
 	if (*found || !path || !export_wants_samples(options->format, &model->model))
 		return STATUS_OK;
 	const enum status status = merl_read(path, options->fit.threads, measurement, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status == STATUS_NO_MEMORY ? status : STATUS_OK;
 	if (options->n_paths || result_is_input(model->input, measurement))
 		*found = path;
@@ -52,7 +52,7 @@ static enum status write_merl(const struct export *export, const char *path, str
 {
 	struct measurement measurement;
 	enum status status = export_table(export, &measurement);
-	if (status)
+	if (status != STATUS_OK)
 		return error_set(error, status, "%s", status_str(status));
 	status = merl_write(path, &measurement, error);
 	measurement_free(&measurement);
@@ -63,7 +63,7 @@ static enum status write_stream(const struct export *export, FILE *stream, struc
 {
 	struct error why;
 	const enum status status = export_write(export, stream, &why);
-	if (status)
+	if (status != STATUS_OK)
 		return error_set(error, status, "cannot export to %s: %.400s", export_format_name(export->format),
 				 why.text);
 	return STATUS_OK;
@@ -78,7 +78,7 @@ static enum status write_standard(const struct export *export, struct error *err
 		return error_set(error, STATUS_IO, "cannot write '/dev/null': %s", strerror(errno));
 	const enum status status = write_stream(export, nowhere, error);
 	fclose(nowhere);
-	return status ? status : write_stream(export, stdout, error); /* main() tells when writing fails */
+	return status != STATUS_OK ? status : write_stream(export, stdout, error); /* main() tells when writing fails */
 }
 
 static enum status write_text(const struct export *export, const char *path, struct error *error)
@@ -87,10 +87,10 @@ static enum status write_text(const struct export *export, const char *path, str
 	if (!path)
 		return write_standard(export, error);
 	enum status status = atomic_file_open(&file, path, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	status = write_stream(export, file.stream, error);
-	if (!status)
+	if (status == STATUS_OK)
 		return atomic_file_commit(&file, error);
 	atomic_file_abort(&file);
 	return status;
@@ -102,7 +102,7 @@ static enum status write_model(const struct options *options, const struct sourc
 {
 	const char *measured;
 	enum status status = find_samples(options, model, measurement, &measured, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	const struct export_source source = {.model = &model->model,
 					     .fit = &model->fit,
@@ -113,7 +113,7 @@ static enum status write_model(const struct options *options, const struct sourc
 	struct export export;
 	struct error why;
 	status = export_prepare(&export, options->format, &source, &why);
-	if (status)
+	if (status != STATUS_OK)
 		return error_set(error, status, "cannot export to %s: %.400s", export_format_name(options->format),
 				 why.text);
 	if (*options->cancel)
@@ -121,7 +121,7 @@ static enum status write_model(const struct options *options, const struct sourc
 	if (options->format != EXPORT_MERL)
 		return write_text(&export, options->output, error);
 	status = write_merl(&export, options->output, error);
-	if (!status && !options->quiet)
+	if (status == STATUS_OK && !options->quiet)
 		fprintf(stderr, "%s\n", export.why);
 	return status;
 }
@@ -130,7 +130,7 @@ static enum status run(const struct options *options, struct error *error)
 {
 	struct model_source source;
 	enum status status = model_source_read(options, options->n_paths ? options->path[0] : NULL, &source, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	if (source.n > 1)
 		status =
@@ -153,7 +153,7 @@ int cmd_export(int argc, char **argv, atomic_bool *cancel)
 	const enum status status = run(&options, &error);
 	if (*cancel || status == STATUS_INTERRUPTED)
 		return EXIT_INTERRUPTED;
-	if (status)
+	if (status != STATUS_OK)
 		report_error("%s", error.text);
-	return status ? EXIT_FAILED : EXIT_DONE;
+	return status != STATUS_OK ? EXIT_FAILED : EXIT_DONE;
 }

@@ -178,12 +178,12 @@ static enum status inspect(struct csv_table *table, const struct options *option
 	struct measurement measurement;
 	struct census census;
 	enum status status = merl_read(path, options->fit.threads, &measurement, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	status = take_census(&measurement, options->fit.criterion.bins, &census);
-	if (!status)
+	if (status == STATUS_OK)
 		status = add_file(table, path, &measurement, &census);
-	if (status)
+	if (status != STATUS_OK)
 		error_set(error, status, "out of memory");
 	measurement_free(&measurement);
 	return status;

@@ -1,289 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit merge - the tables of a batch's shares, joined into the one that a single run would have written. */
-#include "data_readers/text_quote.h"
 #include "fit/cli/options.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
+#include "fit/results/merge.h"
 #include "fit/results/store.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* A row, and where it stands. */
-struct part {
-	char **cell;
-	const char *table; /* the path of its table */
-	size_t number;     /* of the row in it, from 1 */
-	size_t turn;       /* in the order of the tables on the command line */
-};
-
-struct merge {
-	char *const *path; /* of the tables */
-	int n_paths;
-	struct csv_table *table; /* one each */
-	struct part *part;       /* all rows; after sort_parts() in order of path and NDF, none twice */
-	size_t n;
-};
-
-/* "'part-1.csv' row 3", for messages. */
-enum { PLACE_SIZE = TEXT_QUOTE_SIZE / 2 + 32 };
-static const char *place(char text[PLACE_SIZE], const struct part *part)
-{
-	char name[TEXT_QUOTE_SIZE / 2];
-	text_quote(part->table, name, sizeof name);
-	snprintf(text, PLACE_SIZE, "'%s' row %zu", name, part->number);
-	return text;
-}
-
-/* qsort order: file, NDF, turn. */
-static int part_order(const void *a, const void *b)
-{
-	const struct part *x = a, *y = b;
-	int order = strcmp(x->cell[RESULT_PATH], y->cell[RESULT_PATH]);
-	if (!order)
-		order = strcmp(x->cell[RESULT_NDF], y->cell[RESULT_NDF]);
-	return order ? order : (x->turn > y->turn) - (x->turn < y->turn);
-}
-
-static enum status read_tables(struct merge *m, struct error *error)
-{
-	size_t n = 0;
-	m->table = calloc((size_t)m->n_paths, sizeof(*m->table));
-	if (!m->table)
-		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	for (int t = 0; t < m->n_paths; t++)
-		m->table[t] = csv_table_make(result_columns, RESULT_COLUMNS);
-	for (int t = 0; t < m->n_paths; t++) {
-		enum status status = store_check_columns(m->path[t], error);
-		if (!status)
-			status = csv_table_read(&m->table[t], m->path[t], RESULT_COLUMNS, NULL, error);
-		if (status)
-			return status;
-		n += m->table[t].n_rows;
-	}
-	if (!n)
-		return error_set(error, STATUS_NO_DATA, "no rows to merge");
-	m->part = calloc(n, sizeof(*m->part));
-	if (!m->part)
-		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	for (int t = 0; t < m->n_paths; t++)
-		for (size_t i = 0; i < m->table[t].n_rows; i++, m->n++)
-			m->part[m->n] = (struct part){m->table[t].row[i], m->path[t], i + 1, m->n};
-	return STATUS_OK;
-}
-
-/* Takes the next word off a text of options. */
-static size_t next_word(const char **text, const char **word)
-{
-	*word = *text + strspn(*text, " ");
-	const size_t length = strcspn(*word, " ");
-	*text = *word + length;
-	return length;
-}
-
-static bool has_word(const char *text, const char *word, size_t length)
-{
-	const char *other;
-	for (size_t n; (n = next_word(&text, &other));)
-		if (n == length && !strncmp(other, word, length))
-			return true;
-	return false;
-}
-
-/* The first option of `text` that `other` has not; its length is 0 when there is none. */
-static const char *word_of_one(const char *text, const char *other, size_t *length)
-{
-	const char *word;
-	do
-		*length = next_word(&text, &word);
-	while (*length && has_word(other, word, *length));
-	return word;
-}
-
-static enum status other_options(const struct part *part, const struct part *first, struct error *error)
-{
-	char here[PLACE_SIZE], there[PLACE_SIZE], word[64], shown[64];
-	const char *text = part->cell[RESULT_OPTIONS], *other = first->cell[RESULT_OPTIONS], *which = "with";
-	size_t length;
-	const char *differs = word_of_one(text, other, &length);
-	if (!length) {
-		which = "without";
-		differs = word_of_one(other, text, &length);
-	}
-	snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word), differs);
-	text_quote(word, shown, sizeof shown);
-	return error_set(error, STATUS_FORMAT, "%s: made with other options than %s: %s '%s'", place(here, part),
-			 place(there, first), which, shown);
-}
-
-static enum status other_version(const struct part *part, const struct part *first, struct error *error)
-{
-	char here[PLACE_SIZE], there[PLACE_SIZE], version[32], other[32];
-	text_quote(part->cell[RESULT_VERSION], version, sizeof version);
-	text_quote(first->cell[RESULT_VERSION], other, sizeof other);
-	return error_set(error, STATUS_FORMAT, "%s: made by version '%s', but %s by '%s'", place(here, part), version,
-			 place(there, first), other);
-}
-
-/* All rows were made with the same options by the same version. */
-static enum status check_origin(const struct merge *m, struct error *error)
-{
-	const struct part *first = &m->part[0];
-	for (size_t i = 1; i < m->n; i++) {
-		const struct part *part = &m->part[i];
-		if (strcmp(part->cell[RESULT_VERSION], first->cell[RESULT_VERSION]))
-			return other_version(part, first, error);
-		if (strcmp(part->cell[RESULT_OPTIONS], first->cell[RESULT_OPTIONS]))
-			return other_options(part, first, error);
-	}
-	return STATUS_OK;
-}
-
-/* With --within a material has one row, of whatever NDF was chosen; in a failed one's rows none was. */
-static bool one_row_a_file(const struct merge *m)
-{
-	return strstr(m->part[0].cell[RESULT_OPTIONS], "within=");
-}
-
-/* The first column but seconds in which two rows differ; RESULT_COLUMNS when there is none. */
-static enum result_column first_difference(const struct part *a, const struct part *b)
-{
-	enum result_column c = 0;
-	while (c < RESULT_COLUMNS && (c == RESULT_SECONDS || !strcmp(a->cell[c], b->cell[c])))
-		c++;
-	return c;
-}
-
-/* Two rows of one file: both say the same of its bytes, and of one fit there is one result. Returns whether they are the
- * same row in *same. */
-static enum status check_pair(const struct merge *m, const struct part *a, const struct part *b, bool *same,
-			      struct error *error)
-{
-	char here[PLACE_SIZE], there[PLACE_SIZE];
-	*same = !strcmp(a->cell[RESULT_NDF], b->cell[RESULT_NDF]);
-	const bool rivals = *same || (one_row_a_file(m) && !(result_failed(a->cell) && result_failed(b->cell)));
-	const enum result_column c = rivals ? first_difference(b, a) : RESULT_COLUMNS;
-	if (c < RESULT_COLUMNS)
-		return error_set(error, STATUS_FORMAT, "%s: differs in %s from %s, of the same file", place(here, b),
-				 result_columns[c].name, place(there, a));
-	if (strcmp(a->cell[RESULT_INPUT], b->cell[RESULT_INPUT]))
-		return error_set(error, STATUS_FORMAT, "%s: made from other bytes than %s, of the same file",
-				 place(here, b), place(there, a));
-	return STATUS_OK;
-}
-
-/* Puts the rows in order and leaves the first of equal ones. */
-static enum status sort_parts(struct merge *m, struct error *error)
-{
-	size_t kept = 0;
-	if (m->n > 0)
-		qsort(m->part, m->n, sizeof(*m->part), part_order);
-	for (size_t i = 0; i < m->n; i++) {
-		bool same = false;
-		const struct part *last = kept ? &m->part[kept - 1] : NULL;
-		if (last && !strcmp(last->cell[RESULT_PATH], m->part[i].cell[RESULT_PATH])) {
-			const enum status status = check_pair(m, last, &m->part[i], &same, error);
-			if (status)
-				return status;
-		}
-		if (!same)
-			m->part[kept++] = m->part[i];
-	}
-	m->n = kept;
-	return STATUS_OK;
-}
-
-/* The first row of the next file. */
-static size_t next_file(const struct merge *m, size_t i)
-{
-	const struct part *first = m->part + i;
-	while (i < m->n && !strcmp(m->part[i].cell[RESULT_PATH], first->cell[RESULT_PATH]))
-		i++;
-	return i;
-}
-
-static enum status lacks(const struct part *without, const struct part *with, struct error *error)
-{
-	char path[TEXT_QUOTE_SIZE / 2], there[PLACE_SIZE], ndf[32];
-	text_quote(without->cell[RESULT_PATH], path, sizeof path);
-	text_quote(with->cell[RESULT_NDF], ndf, sizeof ndf);
-	return error_set(error, STATUS_FORMAT,
-			 "no row of '%s' for %s, as in %s: another --ndf, or a share that did not end", path, ndf,
-			 place(there, with));
-}
-
-/* Every file has rows of the same NDFs. */
-static enum status check_ndfs(const struct merge *m, struct error *error)
-{
-	size_t i = 0, j = next_file(m, 0);
-	while (j < m->n && !one_row_a_file(m)) {
-		const size_t end_i = j, end_j = next_file(m, j), start = j;
-		for (; i < end_i || j < end_j; i++, j++) {
-			const int order = i == end_i ? 1
-					  : j == end_j
-						  ? -1
-						  : strcmp(m->part[i].cell[RESULT_NDF], m->part[j].cell[RESULT_NDF]);
-			if (order)
-				return order < 0 ? lacks(&m->part[start], &m->part[i], error)
-						 : lacks(&m->part[end_i - 1], &m->part[j], error);
-		}
-		i = start;
-		j = end_j;
-	}
-	return STATUS_OK;
-}
-
-static const char *base_name(const char *path)
-{
-	const char *slash = strrchr(path, '/');
-	return slash ? slash + 1 : path;
-}
-
-static bool is_given(const struct files *files, const char *path)
-{
-	for (size_t f = 0; f < files->n; f++)
-		if (!strcmp(files->path[f], path))
-			return true;
-	return false;
-}
-
-/* A file without a row: its share is not there, or the shares know it by another path. */
-static enum status no_row(const struct merge *m, const struct files *files, const char *path, struct error *error)
-{
-	char name[TEXT_QUOTE_SIZE / 2], other[TEXT_QUOTE_SIZE / 2], there[PLACE_SIZE];
-	text_quote(path, name, sizeof name);
-	for (size_t i = 0; i < m->n; i++) {
-		const char *fitted = m->part[i].cell[RESULT_PATH];
-		if (strcmp(base_name(fitted), base_name(path)) != 0 || is_given(files, fitted))
-			continue;
-		text_quote(fitted, other, sizeof other);
-		return error_set(error, STATUS_NO_DATA,
-				 "no row of '%s', but %s is of '%s': expected the paths that were fitted", name,
-				 place(there, &m->part[i]), other);
-	}
-	return error_set(error, STATUS_NO_DATA, "no row of '%s': its share is missing or did not end", name);
-}
-
-/* The rows are those of these files, which are in order, and of no others. */
-static enum status check_files(const struct merge *m, const struct files *files, struct error *error)
-{
-	char name[TEXT_QUOTE_SIZE / 2], here[PLACE_SIZE];
-	size_t i = 0;
-	for (size_t f = 0; f < files->n || i < m->n; f++) {
-		const int order = i == m->n       ? -1
-				  : f == files->n ? 1
-						  : strcmp(files->path[f], m->part[i].cell[RESULT_PATH]);
-		if (order < 0)
-			return no_row(m, files, files->path[f], error);
-		if (order > 0) {
-			text_quote(m->part[i].cell[RESULT_PATH], name, sizeof name);
-			return error_set(error, STATUS_FORMAT, "%s: of '%s', which is not among the files given",
-					 place(here, &m->part[i]), name);
-		}
-		i = next_file(m, i);
-	}
-	return STATUS_OK;
-}
 
 static void show_fits(FILE *file, const struct csv_table *table)
 {
@@ -302,31 +26,9 @@ static enum status write_merged(const struct options *options, const struct merg
 	report_output(&merged, options_show(options), show_fits);
 	enum status status = STATUS_OK;
 	if (options->output)
-		status = store_write(options->output, &merged, options->json ? report_json : report_csv, error);
+		status = store_write(options->output, &merged, options->json ? report_json : csv_write, error);
 	free(merged.row); /* the rows are the parts' */
 	return status;
-}
-
-static enum status merge(const struct options *options, struct merge *m, const struct files *files, struct error *error)
-{
-	enum status status = read_tables(m, error);
-	if (!status)
-		status = check_origin(m, error);
-	if (!status)
-		status = sort_parts(m, error);
-	if (!status)
-		status = check_ndfs(m, error);
-	if (!status && files)
-		status = check_files(m, files, error);
-	return status ? status : write_merged(options, m, error);
-}
-
-static void merge_free(struct merge *m)
-{
-	for (int t = 0; m->table && t < m->n_paths; t++)
-		csv_table_free(&m->table[t]);
-	free(m->table);
-	free(m->part);
 }
 
 /* Puts the tables before what else is on the command line, each in its order; returns how many there are. */
@@ -362,10 +64,13 @@ int cmd_merge(int argc, char **argv, atomic_bool *cancel)
 		return EXIT_FAILED;
 	}
 	files_sort(&files);
-	const enum status status = merge(&options, &m, n_files ? &files : NULL, &error);
-	if (status)
+	const struct merge_files fitted = {files.path, files.n};
+	enum status status = merge_tables(&m, n_files ? &fitted : NULL, &error);
+	if (status == STATUS_OK)
+		status = write_merged(&options, &m, &error);
+	if (status != STATUS_OK)
 		report_error("%s", error.text);
 	merge_free(&m);
 	files_free(&files);
-	return status ? EXIT_FAILED : EXIT_DONE;
+	return status != STATUS_OK ? EXIT_FAILED : EXIT_DONE;
 }

@@ -57,7 +57,7 @@ static const struct csv_column given_columns[NDF_GIVEN] = {
 };
 
 /* Where a distribution is looked at, degrees. */
-struct place {
+struct directions {
 	double theta, phi, theta_i; /* theta_i NaN: nobody looks */
 };
 
@@ -72,22 +72,23 @@ static void set(struct line *line, enum ndf_column column, double x)
 	line->cell[column] = csv_number(line->text[column], x);
 }
 
-static void evaluate(struct line *line, const struct distribution *distribution, enum gaf gaf, struct place place)
+static void evaluate(struct line *line, const struct distribution *distribution, enum gaf gaf,
+		     struct directions directions)
 {
-	const struct vec3 m = vec3_from_spherical_deg(place.theta, place.phi);
+	const struct vec3 m = vec3_from_spherical_deg(directions.theta, directions.phi);
 	const double slope = hypot(m.x, m.y) / m.z;
-	set(line, NDF_THETA, place.theta);
-	set(line, NDF_PHI, place.phi);
-	set(line, NDF_THETA_I, place.theta_i);
+	set(line, NDF_THETA, directions.theta);
+	set(line, NDF_PHI, directions.phi);
+	set(line, NDF_THETA_I, directions.theta_i);
 	set(line, NDF_D, distribution_D(distribution, m));
 	set(line, NDF_P22, m.z > 0 ? distribution_P22(distribution, -m.x / m.z, -m.y / m.z) : NAN);
-	set(line, NDF_P2, m.z > 0 ? distribution_P2(distribution, place.phi * M_PI / 180, slope) : NAN);
+	set(line, NDF_P2, m.z > 0 ? distribution_P2(distribution, directions.phi * M_PI / 180, slope) : NAN);
 	set(line, NDF_LAMBDA, distribution_lambda(distribution, m));
 	set(line, NDF_G1, distribution_G1(distribution, m));
 	set(line, NDF_PDF, distribution_D(distribution, m) * m.z);
-	if (isnan(place.theta_i))
+	if (isnan(directions.theta_i))
 		return;
-	const struct vec3 wi = vec3_from_spherical_deg(place.theta_i, 0);
+	const struct vec3 wi = vec3_from_spherical_deg(directions.theta_i, 0);
 	const double pdf = distribution_visible_pdf(distribution, wi, m);
 	set(line, NDF_VISIBLE_PDF, pdf);
 	set(line, NDF_WEIGHT, pdf > 0 ? distribution_weight(distribution, gaf, wi, m, pdf) : 0);
@@ -113,14 +114,14 @@ static enum status tabulate(const struct options *options, const struct describe
 {
 	struct angles theta, phi = {0};
 	enum status status = angles_parse(options->theta, 0, 90, &theta, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = angles_parse(options->phi ? options->phi : "0", -360, 360, &phi, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = check_count(&theta, &phi, error);
-	for (size_t i = 0; !status && i < theta.n; i++)
-		for (size_t j = 0; !status && j < phi.n; j++) {
+	for (size_t i = 0; status == STATUS_OK && i < theta.n; i++)
+		for (size_t j = 0; status == STATUS_OK && j < phi.n; j++) {
 			evaluate(line, &item->distribution, item->gaf,
-				 (struct place){theta.deg[i], phi.deg[j], options->theta_i});
+				 (struct directions){theta.deg[i], phi.deg[j], options->theta_i});
 			status = *options->cancel ? STATUS_INTERRUPTED : add(output, line, error);
 		}
 	angles_free(&theta);
@@ -142,9 +143,9 @@ static enum status run_options(const struct options *options, struct csv_table *
 {
 	struct distribution_source source;
 	enum status status = distribution_source_read(options, &source, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
-	for (size_t i = 0; i < source.n && !status; i++) {
+	for (size_t i = 0; i < source.n && status == STATUS_OK; i++) {
 		struct line line = {.cell = {0}};
 		describe(&line, &source.item[i].words);
 		status = tabulate(options, &source.item[i], &line, output, error);
@@ -154,7 +155,8 @@ static enum status run_options(const struct options *options, struct csv_table *
 }
 
 /* The place of a row; what it leaves empty comes from the options. */
-static enum status row_place(const struct options *options, char *const *row, struct place *place, struct error *error)
+static enum status row_directions(const struct options *options, char *const *row, struct directions *directions,
+				  struct error *error)
 {
 	static const struct {
 		enum ndf_column column;
@@ -169,7 +171,7 @@ static enum status row_place(const struct options *options, char *const *row, st
 		if (!isnan(x))
 			value[i] = x;
 	}
-	*place = (struct place){value[0], value[1], value[2]};
+	*directions = (struct directions){value[0], value[1], value[2]};
 	return isnan(value[0]) ? error_set(error, STATUS_DOMAIN, "theta is empty") : STATUS_OK;
 }
 
@@ -181,23 +183,23 @@ static enum status run_row(const struct options *options, char *const *row, size
 						 row[NDF_GAMMA], row[NDF_PARAMS], row[NDF_LAMBDA_FORM]};
 	struct distribution distribution;
 	struct line line = {.cell = {0}};
-	struct place place;
+	struct directions directions;
 	struct error why;
 	for (int c = 0; c < NDF_GIVEN; c++) {
 		double x;
 		line.cell[c] = !columns[c].number || csv_parse_number(row[c], &x) ? row[c] : "";
 	}
 	enum status status = distribution_make(&words, &distribution, &why);
-	if (!status) {
-		status = row_place(options, row, &place, &why);
-		if (!status)
-			evaluate(&line, &distribution, options->fit.criterion.gaf, place);
+	if (status == STATUS_OK) {
+		status = row_directions(options, row, &directions, &why);
+		if (status == STATUS_OK)
+			evaluate(&line, &distribution, options->fit.criterion.gaf, directions);
 		distribution_free(&distribution);
 	}
 	if (status == STATUS_DOMAIN) {
 		*bad = true;
 		report_error("row %zu: %.400s", number, why.text);
-	} else if (status) {
+	} else if (status != STATUS_OK) {
 		return error_set(error, status, "row %zu: %.400s", number, why.text);
 	}
 	return add(output, &line, error);
@@ -207,7 +209,7 @@ static enum status run_input(const struct options *options, struct csv_table *ou
 {
 	struct csv_table rows = csv_table_make(given_columns, NDF_GIVEN);
 	enum status status = csv_table_read(&rows, "/dev/stdin", NDF_NDF + 1, NULL, error);
-	for (size_t i = 0; i < rows.n_rows && !status; i++)
+	for (size_t i = 0; i < rows.n_rows && status == STATUS_OK; i++)
 		status = *options->cancel ? STATUS_INTERRUPTED
 					  : run_row(options, rows.row[i], i + 1, output, bad, error);
 	csv_table_free(&rows);

@@ -2,6 +2,7 @@
 /* stdfit plot - fits, and the course of searches, as pictures by gnuplot. */
 #include "data_readers/regular_file.h"
 #include "fit/cli/output_directory.h"
+#include "fit/cli/progress.h"
 #include "fit/commands/commands.h"
 #include "fit/plot/gnuplot.h"
 #include "fit/plot/plot_files.h"
@@ -14,7 +15,7 @@ struct plotting {
 	const struct options *options;
 	struct progress progress;
 	int code;
-	bool no_gnuplot; /* told already, */
+	bool no_gnuplot; /* reported already, */
 	bool no_data;    /* as is why there is no fit */
 };
 
@@ -22,8 +23,8 @@ struct plotting {
 static void fail(struct plotting *p, enum status status, const struct error *error)
 {
 	progress_erase(&p->progress);
-	const bool told = status == STATUS_INTERRUPTED || (status == STATUS_NO_DATA && p->no_data);
-	if (status != STATUS_UNSUPPORTED && !told)
+	const bool reported = status == STATUS_INTERRUPTED || (status == STATUS_NO_DATA && p->no_data);
+	if (status != STATUS_UNSUPPORTED && !reported)
 		report_error("%s", error->text);
 	else if (status == STATUS_UNSUPPORTED && !p->no_gnuplot)
 		report_error("%s: data and scripts are written, no picture is drawn", error->text);
@@ -42,16 +43,16 @@ static void plot_one(struct plotting *p, const struct material *material)
 	struct error error;
 	char *directory = NULL;
 	enum status status = material_read(material, p->options->fit.threads, &data, &error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = output_directory_make(p->options->output, material->file_name, &directory, &error);
-	for (int i = 0; i < PLOT_MATERIAL_TABLES && !status; i++)
+	for (int i = 0; i < PLOT_MATERIAL_TABLES && status == STATUS_OK; i++)
 		status = output_directory_spares(directory, plot_material_tables[i], p->options->path,
 						 p->options->n_paths, &error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = plot_material(directory, &data, &error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = draw(p, directory, plot_material_names, PLOT_MATERIAL_PICTURES, &error);
-	if (status)
+	if (status != STATUS_OK)
 		fail(p, status, &error);
 	free(directory);
 	material_data_free(&data);
@@ -62,9 +63,9 @@ static void plot_all(struct plotting *p, const struct materials *materials)
 	static const char *const name[] = {"errors"};
 	struct error error;
 	enum status status = plot_errors(p->options->output, materials, &error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = draw(p, p->options->output, name, 1, &error);
-	if (status)
+	if (status != STATUS_OK)
 		fail(p, status, &error);
 	p->progress = progress_start(materials->n, "materials", p->options->quiet);
 	for (size_t i = 0; i < materials->n && !*p->options->cancel; i++) {
@@ -97,11 +98,11 @@ static void plot_the_trace(struct plotting *p)
 	struct csv_table trace = csv_table_make(trace_columns, TRACE_COLUMNS);
 	struct error error;
 	enum status status = csv_table_read(&trace, p->options->path[0], TRACE_COLUMNS, NULL, &error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = plot_trace(p->options->output, &trace, &error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = draw(p, p->options->output, name, 1, &error);
-	if (status)
+	if (status != STATUS_OK)
 		fail(p, status, &error);
 	csv_table_free(&trace);
 }
@@ -110,7 +111,7 @@ static void plot_the_fits(struct plotting *p)
 {
 	struct materials materials;
 	const int code = materials_collect(&materials, p->options);
-	p->no_data = materials.told;
+	p->no_data = materials.reported;
 	if (materials.n && code != EXIT_INTERRUPTED)
 		plot_all(p, &materials);
 	materials_free(&materials);
@@ -130,11 +131,11 @@ int cmd_plot(int argc, char **argv, atomic_bool *cancel)
 		return code;
 	static const char *const written[] = {"trace.csv", "errors.csv"};
 	enum status status = output_directory_make(options.output, NULL, NULL, &error);
-	for (size_t i = 0; i < sizeof written / sizeof *written && !status; i++)
+	for (size_t i = 0; i < sizeof written / sizeof *written && status == STATUS_OK; i++)
 		status = output_directory_spares(options.output, written[i], options.path, options.n_paths, &error);
 	if (status == STATUS_DOMAIN)
 		return options_usage(COMMAND_PLOT, "%s", error.text);
-	if (status) {
+	if (status != STATUS_OK) {
 		report_error("%s", error.text);
 		return EXIT_FAILED;
 	}

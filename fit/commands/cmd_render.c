@@ -4,6 +4,7 @@
 #include "data_readers/text_quote.h"
 #include "fit/cli/files.h"
 #include "fit/cli/lighting.h"
+#include "fit/cli/progress.h"
 #include "fit/commands/commands.h"
 #include "fit/render/pictures.h"
 #include "fit/render/sheet.h"
@@ -125,7 +126,7 @@ static enum status plan_columns(struct render *render, const struct files *files
 		const enum status status = model_source_read(options, files->path[i], &source, error);
 		if (status == STATUS_NO_MEMORY)
 			return status;
-		if (status)
+		if (status != STATUS_OK)
 			continue;
 		if (!choose(render, &source, files->path[i], &chosen, error)) {
 			int column[COLUMNS_MAX];
@@ -197,9 +198,9 @@ static enum status show_models(struct render *render, const char *path, const st
 		material ? pictures_render(measurement, chosen->model[0]->fit.criterion.bins, model, chosen->n,
 					   render->options->sampling, &render->environment, &render->sphere, &pictures)
 			 : STATUS_NO_MEMORY;
-	for (int i = 0; i < chosen->n && !status; i++)
+	for (int i = 0; i < chosen->n && status == STATUS_OK; i++)
 		status = add_row(render, material, chosen->model[i], &pictures.error[i]);
-	if (!status && render->picture)
+	if (status == STATUS_OK && render->picture)
 		draw(render, material, chosen, &pictures);
 	pictures_free(&pictures);
 	free(material);
@@ -211,14 +212,14 @@ static enum status show_source(struct render *render, const char *path, struct m
 {
 	struct chosen chosen;
 	enum status status = choose(render, source, path, &chosen, error);
-	if (!status && !source->measurement.value[0])
+	if (status == STATUS_OK && !source->measurement.value[0])
 		status = merl_read(path, render->options->fit.threads, &source->measurement, error);
-	for (int i = 0; i < chosen.n && !status && render->from_table; i++)
+	for (int i = 0; i < chosen.n && status == STATUS_OK && render->from_table; i++)
 		status = result_check_input(chosen.model[i]->input, &source->measurement, path, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	status = show_models(render, path, &source->measurement, &chosen);
-	if (!status)
+	if (status == STATUS_OK)
 		return STATUS_OK;
 	char name[TEXT_QUOTE_SIZE];
 	text_quote(path, name, sizeof name);
@@ -230,11 +231,11 @@ static enum status show_file(struct render *render, const char *path)
 	struct model_source source;
 	struct error error;
 	enum status status = model_source_read(render->options, path, &source, &error);
-	if (!status) {
+	if (status == STATUS_OK) {
 		status = show_source(render, path, &source, &error);
 		model_source_free(&source);
 	}
-	if (status && status != STATUS_INTERRUPTED) {
+	if (status != STATUS_OK && status != STATUS_INTERRUPTED) {
 		progress_erase(&render->progress);
 		report_error("%s", error.text);
 	}
@@ -247,12 +248,12 @@ static enum status prepare_sheet(struct render *render, size_t n, struct error *
 {
 	const struct options *options = render->options;
 	enum status status = store_probe(render->picture, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	status = n < IMAGE_SIZE_MAX ? sheet_init(&render->sheet, options->size, 1 + render->n_columns, (int)n,
 						 n == 1 || options->difference)
 				    : STATUS_DOMAIN;
-	if (status)
+	if (status != STATUS_OK)
 		return error_set(
 			error, status, "%s",
 			status == STATUS_DOMAIN
@@ -283,9 +284,9 @@ static int show_files(struct render *render, const struct files *files)
 	struct error error;
 	size_t failed = 0;
 	enum status status = plan_columns(render, files, &error);
-	if (!status && render->picture)
+	if (status == STATUS_OK && render->picture)
 		status = prepare_sheet(render, files->n, &error);
-	if (status) {
+	if (status != STATUS_OK) {
 		report_error("%s", error.text);
 		return EXIT_FAILED;
 	}
@@ -315,9 +316,9 @@ static enum status table_files(const char *table, struct files *files, const ato
 	for (size_t i = 0; i < rows.n_rows && path; i++)
 		if (*rows.row[i][RESULT_PATH] && !result_failed(rows.row[i]))
 			path[n++] = rows.row[i][RESULT_PATH];
-	if (!status && (!path || files_collect(files, path, n, false, cancel) < 0))
+	if (status == STATUS_OK && (!path || files_collect(files, path, n, false, cancel) < 0))
 		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
-	if (!status && !files->n) {
+	if (status == STATUS_OK && !files->n) {
 		char name[TEXT_QUOTE_SIZE];
 		text_quote(table, name, sizeof name);
 		status = error_set(error, STATUS_NO_DATA, "'%s' has no row of a fit with the path of its file", name);
@@ -346,11 +347,11 @@ static int collect_and_show(struct render *render)
 	enum status status = lighting_make(options, &render->environment, &error);
 	if (status == STATUS_DOMAIN)
 		return options_usage(COMMAND_RENDER, "%s", error.text);
-	if (!status && render->from_table)
+	if (status == STATUS_OK && render->from_table)
 		status = table_files(options->from, &files, options->cancel, &error);
-	else if (!status)
+	else if (status == STATUS_OK)
 		bad = files_collect(&files, options->path, options->n_paths, options->recursive, options->cancel);
-	if (status)
+	if (status != STATUS_OK)
 		report_error("%s", error.text);
 	int code = status || bad < 0 || !files.n ? EXIT_FAILED : -1;
 	if (code < 0)

@@ -4,6 +4,7 @@
 #include "data_readers/atomic_file.h"
 #include "fit/cli/lighting.h"
 #include "fit/cli/output_directory.h"
+#include "fit/cli/progress.h"
 #include "fit/commands/commands.h"
 #include "fit/page/page.h"
 #include "fit/page/report_spheres.h"
@@ -46,7 +47,7 @@ static bool draw(struct report *r, const char *const *name, int n, struct error 
 		report_error("%s: the page has no plots", error->text);
 		r->no_gnuplot = true;
 		r->missing = *error;
-	} else if (status && status != STATUS_INTERRUPTED) {
+	} else if (status != STATUS_OK && status != STATUS_INTERRUPTED) {
 		tell(r, error);
 	}
 	return status == STATUS_OK;
@@ -75,9 +76,9 @@ static enum status begin(struct report *r, struct page *page, FILE *file, const 
 	struct error why;
 	const enum status status = plot_errors(r->scratch.path, materials, &why);
 	const bool wanted = status != STATUS_NO_DATA && materials->n > 1;
-	if (status && status != STATUS_NO_DATA)
+	if (status != STATUS_OK && status != STATUS_NO_DATA)
 		tell(r, &why);
-	if (!status && wanted && draw(r, name, 1, &why)) {
+	if (status == STATUS_OK && wanted && draw(r, name, 1, &why)) {
 		errors.path = scratch_path(r, "errors.svg", &why);
 		if (!errors.path)
 			tell(r, &why);
@@ -134,12 +135,12 @@ static bool draw_spheres(struct report *r, const struct material_data *data, str
 		*why = r->missing_png;
 	else if (path)
 		status = report_spheres(path, data, &r->environment, r->options, difference, why);
-	if (!status) {
+	if (status == STATUS_OK) {
 		*caption = spheres_caption(r->options, data, difference);
 		if (!*caption)
 			status = error_set(why, STATUS_NO_MEMORY, "out of memory");
 	}
-	if (!status) {
+	if (status == STATUS_OK) {
 		picture->path = path;
 		picture->caption = *caption;
 		return true;
@@ -183,11 +184,11 @@ static bool draw_material(struct report *r, const struct materials *materials, s
 {
 	struct material_data data;
 	const enum status status = material_read(&materials->material[m], r->options->fit.threads, &data, why);
-	if (status == STATUS_NO_DATA && materials->told)
+	if (status == STATUS_NO_DATA && materials->reported)
 		r->code = EXIT_FAILED;
-	else if (status)
+	else if (status != STATUS_OK)
 		tell(r, why);
-	if (status)
+	if (status != STATUS_OK)
 		return false;
 	struct error no_spheres;
 	const bool spheres = draw_spheres(r, &data, &picture[PICTURE_SPHERES], caption, &no_spheres);
@@ -245,13 +246,13 @@ static enum status write_page(struct report *r, FILE *file, const struct materia
 	struct page page;
 	enum status status = begin(r, &page, file, materials, error);
 	r->progress = progress_start(materials->n, "materials", r->options->quiet);
-	for (size_t m = 0; m < materials->n && !status; m++) {
+	for (size_t m = 0; m < materials->n && status == STATUS_OK; m++) {
 		progress_draw(&r->progress);
 		status = add_material(r, &page, m, error);
 		r->progress.done = m + 1;
 	}
 	progress_erase(&r->progress);
-	if (!status)
+	if (status == STATUS_OK)
 		page_end(&page);
 	page_free(&page);
 	return *r->options->cancel ? STATUS_INTERRUPTED : status;
@@ -265,13 +266,13 @@ static enum status make_page(struct report *r, const struct materials *materials
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	enum status status = atomic_file_open(&file, path, error);
 	free(path);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	status = scratch_make(r->options->output, &r->scratch, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = write_page(r, file.stream, materials, error);
 	scratch_remove(&r->scratch);
-	if (!status)
+	if (status == STATUS_OK)
 		return atomic_file_commit(&file, error);
 	atomic_file_abort(&file);
 	return status;
@@ -289,13 +290,13 @@ int cmd_report(int argc, char **argv, atomic_bool *cancel)
 	if (code >= 0)
 		return code;
 	enum status status = output_directory_make(options.output, NULL, NULL, &error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = output_directory_spares(options.output, "index.html", options.path, options.n_paths, &error);
 	if (status == STATUS_DOMAIN)
 		return options_usage(COMMAND_REPORT, "%s", error.text);
-	if (!status)
+	if (status == STATUS_OK)
 		status = output_directory_takes(options.output, "index.html", &error);
-	if (status) {
+	if (status != STATUS_OK) {
 		report_error("%s", error.text);
 		return EXIT_FAILED;
 	}
@@ -304,14 +305,14 @@ int cmd_report(int argc, char **argv, atomic_bool *cancel)
 	status = lighting_make(&options, &report.environment, &error);
 	if (status == STATUS_DOMAIN)
 		return options_usage(COMMAND_REPORT, "%s", error.text);
-	if (status) {
+	if (status != STATUS_OK) {
 		report_error("%s", error.text);
 		return EXIT_FAILED;
 	}
 	code = materials_collect(&materials, &options);
 	if (materials.n && code != EXIT_INTERRUPTED)
 		status = make_page(&report, &materials, &error);
-	if (status && status != STATUS_INTERRUPTED) {
+	if (status != STATUS_OK && status != STATUS_INTERRUPTED) {
 		report_error("%s", error.text);
 		report.code = EXIT_FAILED;
 	}

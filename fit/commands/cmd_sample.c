@@ -71,20 +71,20 @@ static enum status draw(const struct options *options, const struct described *i
 	enum status status = rng ? STATUS_OK : STATUS_NO_MEMORY;
 	if (rng)
 		gsl_rng_set(rng, (unsigned long)options->fit.seed);
-	for (int i = 0; i < options->count && !status; i++) {
+	for (int i = 0; i < options->count && status == STATUS_OK; i++) {
 		const double u1 = gsl_rng_uniform(rng), u2 = gsl_rng_uniform(rng);
 		status = *options->cancel ? STATUS_INTERRUPTED : add_sample(item, sampling, wi, u1, u2, output);
 	}
 	if (rng)
 		gsl_rng_free(rng);
-	return status ? error_set(error, status, "%s", status_str(status)) : STATUS_OK;
+	return status != STATUS_OK ? error_set(error, status, "%s", status_str(status)) : STATUS_OK;
 }
 
 static enum status run(const struct options *options, struct csv_table *output, struct error *error)
 {
 	struct distribution_source source;
 	enum status status = distribution_source_read(options, &source, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	status = source.n == 1 ? draw(options, &source.item[0], output, error)
 			       : error_set(error, STATUS_FORMAT, "%zu rows are meant: choose one with --row", source.n);

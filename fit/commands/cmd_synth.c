@@ -29,13 +29,13 @@ static enum status add_noise(struct measurement *measurement, double noise, uint
 static enum status synthesise(const struct options *options, const struct cook_torrance *model, struct error *error)
 {
 	struct measurement measurement;
-	enum status status = model_table(model, options->fit.criterion.bins, options->n_phi_d, 90, options->fit.threads,
-					 &measurement);
-	if (status)
+	enum status status =
+		model_table(model, options->fit.criterion.bins, options->n_phi_d, 90, options->fit.threads, &measurement);
+	if (status != STATUS_OK)
 		return error_set(error, status, "%s", status_str(status));
 	if (options->noise > 0)
 		status = add_noise(&measurement, options->noise, options->fit.seed);
-	if (status)
+	if (status != STATUS_OK)
 		error_set(error, status, "%s", status_str(status));
 	else
 		status = *options->cancel ? STATUS_INTERRUPTED : merl_write(options->path[0], &measurement, error);
@@ -58,9 +58,9 @@ int cmd_synth(int argc, char **argv, atomic_bool *cancel)
 	if (code >= 0)
 		return code;
 	const enum status status = synthesise(&options, &model, &error);
-	if (status && status != STATUS_INTERRUPTED)
+	if (status != STATUS_OK && status != STATUS_INTERRUPTED)
 		report_error("%s", error.text);
-	if (status)
+	if (status != STATUS_OK)
 		return status == STATUS_INTERRUPTED ? EXIT_INTERRUPTED : EXIT_FAILED;
 	return EXIT_DONE;
 }

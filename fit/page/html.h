@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* html - text and files inside a page. Failures to write show in ferror(). */
+/* html - text and files inside a page. Failures to write show in ferror().
+ * Written by hand: one fixed page needs a few lines, and no library for templates. */
 #ifndef HTML_H
 #define HTML_H
 

@@ -349,7 +349,7 @@ enum status page_material(const struct page *page, size_t m, const struct page_p
 	fputs("</h3>", file);
 	put_best(file, &page->grid, &page->grid.line[m]);
 	fputs("</summary>\n", file);
-	for (int p = 0; p < n_pictures && !status; p++)
+	for (int p = 0; p < n_pictures && status == STATUS_OK; p++)
 		status = put_picture(file, material->name, &picture[p], error);
 	put_missing(file, missing);
 	put_parameters(file, material);

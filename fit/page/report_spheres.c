@@ -34,17 +34,17 @@ enum status report_spheres(const char *path, const struct material_data *data, c
 		model[f] = (struct pictures_model){&data->fit[f].model, data->fit[f].error};
 	enum status status = pictures_render(&data->measurement, data->fit[0].options.criterion.bins, model, data->n,
 					     SAMPLING_VISIBLE, environment, &sphere, &pictures);
-	if (status)
+	if (status != STATUS_OK)
 		return error_set(error, status, "cannot render: %s", status_str(status));
 	status = sheet_init(&sheet, options->size, data->n + 1, 1, true);
-	if (status) {
+	if (status != STATUS_OK) {
 		error_set(error, status, "cannot render: %s", status_str(status));
 	} else {
 		draw(&sheet, data, &pictures);
 		status = image_write_png(path, &sheet.image, error);
 		sheet_free(&sheet);
 	}
-	for (int f = 0; f < data->n && !status; f++)
+	for (int f = 0; f < data->n && status == STATUS_OK; f++)
 		picture[f] = pictures.error[f];
 	pictures_free(&pictures);
 	return status;

@@ -11,12 +11,9 @@
 enum status plot_open(struct atomic_file *file, const char *directory, const char *name, struct error *error)
 {
 	char *path;
-	enum status status = output_directory_takes(directory, name, error);
-	if (status)
-		return status;
-	if (asprintf(&path, "%s/%s", directory, name) < 0)
-		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	status = atomic_file_open(file, path, error);
+	enum status status = output_directory_path(directory, name, &path, error);
+	if (status == STATUS_OK)
+		status = atomic_file_open(file, path, error);
 	free(path);
 	return status;
 }

@@ -12,7 +12,7 @@ static enum status write_errors(const char *directory, const struct error_grid *
 {
 	struct atomic_file file;
 	const enum status status = plot_open(&file, directory, "errors.csv", error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	fputs("material", file.stream);
 	for (int n = 0; n < grid->n_ndf; n++) {
@@ -37,7 +37,7 @@ static enum status write_errors_script(const char *directory, const struct error
 			  : grid->n_fitted > LABELS_MOST ? 2000
 							 : 400 + 14 * (int)grid->n_fitted;
 	const enum status status = plot_open(&file, directory, "errors.gp", error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	gnuplot_begin(file.stream, "errors", width, 560);
 	fprintf(file.stream,
@@ -65,9 +65,9 @@ enum status plot_errors(const char *directory, const struct materials *materials
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	error_grid_sort(&grid);
 	enum status status = grid.n_fitted ? STATUS_OK : error_set(error, STATUS_NO_DATA, "no fit has an error");
-	if (!status)
+	if (status == STATUS_OK)
 		status = write_errors(directory, &grid, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = write_errors_script(directory, &grid, error);
 	error_grid_free(&grid);
 	return status;

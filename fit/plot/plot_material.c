@@ -98,7 +98,7 @@ static enum status write_D(const char *directory, const struct material_data *da
 	static const char *const what[] = {"D", "D_measured"};
 	struct atomic_file file;
 	const enum status status = plot_open(&file, directory, "ndf_D.csv", error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	put_header(file.stream, "theta_h_deg", data, what, 2);
 	for (int i = 0; i < MERL_THETA_H; i++) {
@@ -122,7 +122,7 @@ static enum status write_G1(const char *directory, const struct material_data *d
 	static const char *const what[] = {"G1", "G1_measured"};
 	struct atomic_file file;
 	const enum status status = plot_open(&file, directory, "ndf_G1.csv", error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	put_header(file.stream, "theta_deg", data, what, 2);
 	for (int a = 0; a <= 90; a++) {
@@ -171,7 +171,7 @@ static enum status write_ndf_script(const char *directory, const struct material
 	struct atomic_file file;
 	const int n = data->n + 1, columns = n <= 4 ? 2 : 3;
 	const enum status status = plot_open(&file, directory, "ndf.gp", error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	gnuplot_begin(file.stream, "ndf", columns * 450, 40 + (n + columns - 1) / columns * PANEL_HEIGHT);
 	put_grid(file.stream, n, columns, "",
@@ -194,11 +194,11 @@ enum status plot_ndf(const char *directory, const struct material_data *data, st
 	if (!readings)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	enum status status = read_ndfs(data, readings, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = write_D(directory, data, readings, &range, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = write_G1(directory, data, readings, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = write_ndf_script(directory, data, &range, error);
 	readings_free(readings);
 	free(readings);
@@ -241,7 +241,7 @@ static enum status write_slices(const char *directory, const struct material_dat
 	static const char *const what[] = {"mean", "r", "g", "b"};
 	struct atomic_file file;
 	const enum status status = plot_open(&file, directory, "slices.csv", error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	put_header(file.stream, "theta_d_deg,theta_h_deg,measured_mean,measured_r,measured_g,measured_b", data, what,
 		   4);
@@ -284,9 +284,9 @@ enum status plot_slices(const char *directory, const struct material_data *data,
 	struct plot_range range = {0, 0};
 	struct atomic_file file;
 	enum status status = write_slices(directory, data, &range, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = plot_open(&file, directory, "slices.gp", error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	const int width = 3 * PANEL_WIDTH + slices_legend(data);
 	const double share = 3.0 * PANEL_WIDTH / width; /* of the panels */
@@ -314,7 +314,7 @@ static enum status make_maps(const struct material_data *data, struct metrics_ro
 		const struct fitted *fit = &data->fit[f];
 		const enum status status =
 			error_map_make(&data->measurement, &fit->model, &fit->options, rows + (size_t)f * MERL_ROWS);
-		if (status)
+		if (status != STATUS_OK)
 			return error_set(error, status, "%s", status_str(status));
 	}
 	return STATUS_OK;
@@ -326,7 +326,7 @@ static enum status write_maps(const char *directory, const struct material_data 
 	static const char *const what[] = {"error"};
 	struct atomic_file file;
 	const enum status status = plot_open(&file, directory, "map.csv", error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	put_header(file.stream, "theta_h_index,theta_d_index,theta_h_deg,theta_d_deg,samples", data, what, 1);
 	for (int n = 0; n < MERL_ROWS; n++) {
@@ -383,7 +383,7 @@ static enum status write_map_script(const char *directory, const struct material
 	const int width = MAP_LEFT + MAP_RIGHT + columns * MAP_PANEL + (columns - 1) * MAP_GAP;
 	const int height = lines * (MAP_PANEL + MAP_BOTTOM) + MAP_TOP;
 	const enum status status = plot_open(&file, directory, "map.gp", error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	gnuplot_begin(file.stream, "map", width, height);
 	put_grid(file.stream, data->n, columns, "",
@@ -422,9 +422,9 @@ enum status plot_map(const char *directory, const struct material_data *data, st
 	if (!rows)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	enum status status = make_maps(data, rows, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = write_maps(directory, data, rows, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = write_map_script(directory, data, error);
 	free(rows);
 	return status;
@@ -433,7 +433,7 @@ enum status plot_map(const char *directory, const struct material_data *data, st
 enum status plot_material(const char *directory, const struct material_data *data, struct error *error)
 {
 	enum status status = plot_ndf(directory, data, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = plot_slices(directory, data, error);
-	return status ? status : plot_map(directory, data, error);
+	return status != STATUS_OK ? status : plot_map(directory, data, error);
 }

@@ -160,7 +160,7 @@ static enum status write_curves(const char *directory, const struct curves *c, s
 {
 	struct atomic_file file;
 	const enum status status = plot_open(&file, directory, "trace.csv", error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	for (size_t n = 0; n < c->n; n++) {
 		fputs(n ? "\n\n" : "", file.stream);
@@ -229,7 +229,7 @@ static enum status write_script(const char *directory, struct curves *c, struct 
 	enum { LINE = 20, HEIGHT = 640 };
 	struct atomic_file file;
 	const enum status status = plot_open(&file, directory, "trace.gp", error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	const int needed = (int)(c->n < 100 ? c->n : 100) * LINE + 100;
 	gnuplot_begin(file.stream, "trace", 1000, needed > HEIGHT ? needed : HEIGHT);
@@ -247,11 +247,11 @@ enum status plot_trace(const char *directory, const struct csv_table *trace, str
 {
 	struct curves curves;
 	enum status status = find_curves(&curves, trace);
-	if (status)
+	if (status != STATUS_OK)
 		error_set(error, status, "%s", status == STATUS_NO_DATA ? "the trace has no points" : "out of memory");
-	if (!status)
+	if (status == STATUS_OK)
 		status = write_curves(directory, &curves, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = write_script(directory, &curves, error);
 	curves_free(&curves);
 	return status;

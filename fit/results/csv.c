@@ -126,7 +126,7 @@ static enum status read_text(struct reader *r, struct error *error)
 	size_t size;
 	struct error why;
 	const enum status status = text_file_read(r->path, "a result table", FILE_SIZE_MAX, &r->text, &size, &why);
-	if (status)
+	if (status != STATUS_OK)
 		return error_set(error, status, "cannot read '%s': %.200s", r->name, why.text);
 	r->at = r->text;
 	r->end = r->text + size;
@@ -186,7 +186,7 @@ static enum status read_record(struct reader *r, struct error *error)
 		char *field = r->at;
 		if (*field == '"') {
 			const enum status status = unquote(r, error);
-			if (status)
+			if (status != STATUS_OK)
 				return status;
 		} else {
 			r->at += strcspn(r->at, ",\n");
@@ -260,12 +260,12 @@ static enum status read_rows(struct csv_table *table, struct reader *r, int need
 		goto out;
 	}
 	status = read_record(r, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = find_columns(table, r, needed, place, error);
 	const size_t n_header = r->n_fields;
-	if (!status && complete)
+	if (status == STATUS_OK && complete)
 		*complete = (size_t)(r->at - r->text);
-	while (!status) {
+	while (status == STATUS_OK) {
 		const char *start = r->at;
 		struct error why;
 		status = read_record(r, &why);
@@ -273,9 +273,9 @@ static enum status read_rows(struct csv_table *table, struct reader *r, int need
 			status = STATUS_OK;
 			break;
 		}
-		if (status)
+		if (status != STATUS_OK)
 			error_set(error, status, "%s", why.text);
-		if (status || !r->n_fields)
+		if (status != STATUS_OK || !r->n_fields)
 			break;
 		status = add_record(table, r, place, n_header, cell, error);
 		if (complete)
@@ -292,11 +292,18 @@ enum status csv_table_read(struct csv_table *table, const char *path, int needed
 	struct reader r = {.path = path, .next_line = 1};
 	text_quote(path, r.name, sizeof r.name);
 	enum status status = read_text(&r, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = read_rows(table, &r, needed, complete, error);
-	if (status)
+	if (status != STATUS_OK)
 		csv_table_free(table);
 	free(r.field);
 	free(r.text);
 	return status;
+}
+
+void csv_write(FILE *file, const struct csv_table *table)
+{
+	csv_write_header(file, table->column, table->n_columns);
+	for (size_t i = 0; i < table->n_rows; i++)
+		csv_write_row(file, table->row[i], table->n_columns);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* csv - tables of text cells in RFC 4180's form (lines end with a newline alone). */
+/* csv - tables of text cells in RFC 4180's form (lines end with a newline alone).
+ * Written by hand: no common library tells a cut last line from a whole one, which resuming needs. */
 #ifndef CSV_H
 #define CSV_H
 
@@ -41,6 +42,8 @@ MUST_CHECK enum status csv_table_read(struct csv_table *table, const char *path,
 /* Lines on a stream; failures show in ferror(). */
 void csv_write_header(FILE *file, const struct csv_column *column, int n_columns);
 void csv_write_row(FILE *file, char *const *cell, int n_columns);
+/* csv_write - header and all rows. */
+void csv_write(FILE *file, const struct csv_table *table);
 
 /* csv_is_name - whether a file of this name is a table: it ends in .csv, in letters of either case. */
 bool csv_is_name(const char *path);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/results/result.h"
 #include "data_readers/text_quote.h"
-#include "fit/results/balance.h"
+#include "fit/results/energy_conservation.h"
 #include "fit/search/free_form.h"
 
 #include <inttypes.h>
@@ -204,12 +204,12 @@ static void set_metrics(struct row *row, const struct fit_metrics *metrics)
 	set_number(row, RESULT_LOG_ERROR, metrics->log_error);
 }
 
-static void set_balance(struct row *row, const struct cook_torrance *model)
+static void set_energy_conservation(struct row *row, const struct cook_torrance *model)
 {
-	const struct balance balance = balance_of(model);
+	const struct energy_conservation energy = energy_conservation_of(model);
 	for (int c = 0; c < 3; c++)
-		set_number(row, RESULT_ALBEDO_R + (enum result_column)c, balance.albedo[c]);
-	row->cell[RESULT_ENERGY] = balance_name(&balance);
+		set_number(row, RESULT_ALBEDO_R + (enum result_column)c, energy.albedo[c]);
+	row->cell[RESULT_ENERGY] = energy_conservation_name(&energy);
 }
 
 enum { NAMES_SIZE = 64, STATUS_SIZE = NAMES_SIZE + 16 };
@@ -252,7 +252,7 @@ enum status result_add(struct csv_table *table, const struct result_source *sour
 	set_number(row, RESULT_ERROR, result->error);
 	set_model(row, options, result, params);
 	set_metrics(row, &result->metrics);
-	set_balance(row, &result->model);
+	set_energy_conservation(row, &result->model);
 	set_number(row, RESULT_STARTS, result->starts);
 	set_number(row, RESULT_STARTS_AGREEING, result->starts_agreeing);
 	row->cell[RESULT_AT_BOUND] = names_text(bounds, result->at_bound);
@@ -342,7 +342,7 @@ static enum status result_nodes(char *const *row, enum bins bins, struct ndf *nd
 	}
 	struct pwl *made = calloc(1, sizeof *made);
 	enum status status = made ? free_form_pwl(bins, D, made) : STATUS_NO_MEMORY;
-	if (status) {
+	if (status != STATUS_OK) {
 		free(made);
 		return status;
 	}

@@ -2,7 +2,6 @@
 #include "fit/results/store.h"
 #include "data_readers/atomic_file.h"
 #include "data_readers/text_quote.h"
-#include "fit/cli/report.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -33,7 +32,7 @@ enum status store_probe(const char *path, struct error *error)
 	if (!stat(path, &info) && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))
 		return STATUS_OK;
 	const enum status status = atomic_file_open(&file, path, error);
-	if (!status)
+	if (status == STATUS_OK)
 		atomic_file_abort(&file);
 	return status;
 }
@@ -70,7 +69,7 @@ enum status store_write(const char *path, const struct csv_table *table,
 {
 	struct atomic_file file;
 	enum status status = atomic_file_open(&file, path, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	write(file.stream, table);
 	/* A full disk shows before the older file is touched. */
@@ -78,7 +77,7 @@ enum status store_write(const char *path, const struct csv_table *table,
 		file.errnum = errno;
 	else
 		status = back_up(path, true, error);
-	if (!status)
+	if (status == STATUS_OK)
 		return atomic_file_commit(&file, error);
 	atomic_file_abort(&file);
 	return status;
@@ -146,7 +145,7 @@ enum status store_check_columns(const char *path, struct error *error)
 	const enum status status = look_at_header(fd, &beginning);
 	const int errnum = errno;
 	close(fd);
-	if (status)
+	if (status != STATUS_OK)
 		return cannot(error, "read", path, errnum);
 	return beginning == HEADER_WHOLE ? STATUS_OK : foreign_columns(path, "merge", error);
 }
@@ -163,7 +162,7 @@ static enum status resume_old(struct store *store, struct error *error)
 	store->headed = beginning == HEADER_WHOLE;
 	if (store->headed) {
 		const enum status status = csv_table_read(&store->old, store->path, RESULT_COLUMNS, &complete, error);
-		if (status)
+		if (status != STATUS_OK)
 			return status;
 	}
 	store->stale = calloc(store->old.n_rows + 1, sizeof(*store->stale));
@@ -191,9 +190,9 @@ enum status store_open(struct store *store, const char *path, bool resume, struc
 	/* A pipe opened for reading too would be its own reader and swallow the rows. */
 	const bool resumes = exists && store->regular && resume;
 	enum status status = open_table(store, exists ? (resumes ? O_RDWR : O_WRONLY) : O_WRONLY | O_CREAT, error);
-	if (!status && resumes)
+	if (status == STATUS_OK && resumes)
 		status = resume_old(store, error);
-	if (status)
+	if (status != STATUS_OK)
 		store_close(store);
 	return status;
 }
@@ -272,16 +271,16 @@ static enum status replace_old(struct store *store, struct error *error)
 	store->fd = -1;
 	store->replaces = false;
 	const enum status status = back_up(store->path, false, error);
-	store->created = !status;
-	return status ? status : open_table(store, O_WRONLY | O_CREAT, error);
+	store->created = status == STATUS_OK;
+	return status != STATUS_OK ? status : open_table(store, O_WRONLY | O_CREAT, error);
 }
 
 enum status store_begin(struct store *store, struct error *error)
 {
 	enum status status = store->replaces ? replace_old(store, error) : STATUS_OK;
-	if (!store->headed && !status) {
+	if (!store->headed && status == STATUS_OK) {
 		status = append_line(store, NULL, error);
-		store->headed = !status;
+		store->headed = status == STATUS_OK;
 	}
 	return status;
 }
@@ -289,7 +288,7 @@ enum status store_begin(struct store *store, struct error *error)
 enum status store_append(struct store *store, const struct csv_table *rows, struct error *error)
 {
 	enum status status = rows->n_rows ? store_begin(store, error) : STATUS_OK;
-	for (size_t i = 0; i < rows->n_rows && !status; i++)
+	for (size_t i = 0; i < rows->n_rows && status == STATUS_OK; i++)
 		status = append_line(store, rows->row[i], error);
 	return status;
 }
@@ -322,10 +321,10 @@ enum status store_rewrite(struct store *store, const struct csv_table *rows, str
 	table.n_rows = n;
 	struct atomic_file file;
 	enum status status = atomic_file_open(&file, store->path, error);
-	if (!status) {
-		report_csv(file.stream, &table);
+	if (status == STATUS_OK) {
+		csv_write(file.stream, &table);
 		status = n < store->old.n_rows + rows->n_rows ? back_up(store->path, true, error) : STATUS_OK;
-		if (status)
+		if (status != STATUS_OK)
 			atomic_file_abort(&file);
 		else
 			status = atomic_file_commit(&file, error);

@@ -47,7 +47,7 @@ MUST_CHECK enum status store_probe(const char *path, struct error *error);
  * or less. */
 MUST_CHECK enum status store_check_columns(const char *path, struct error *error);
 
-/* store_write - a whole table of any kind, by report_csv() or report_json(), in the place of an older file, which is kept
+/* store_write - a whole table of any kind, by csv_write() or report_json(), in the place of an older file, which is kept
  * as `path` with ~ behind it. On failure the older file stays (where hard links are not to be had,
  * perhaps under that other name). */
 MUST_CHECK enum status store_write(const char *path, const struct csv_table *table,

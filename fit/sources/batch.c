@@ -2,6 +2,7 @@
 #include "fit/sources/batch.h"
 #include "data_readers/merl.h"
 #include "data_readers/text_quote.h"
+#include "fit/cli/progress.h"
 #include "fit/cli/report.h"
 #include "fit/search/within.h"
 
@@ -95,16 +96,16 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 	const struct fit_context *context;
 	struct fit_result result[FIT_NDFS_MAX];
 	enum status status = get_context(run, measurement->n_phi_d, &context);
-	if (status)
+	if (status != STATUS_OK)
 		return error_set(&file->error, status, "%s", status_str(status));
 	if (!isnan(options->within))
 		status = within_run(context, measurement, fit, options->within, fit, result, &file->error);
 	else
 		status = fit_run(context, measurement, fit, result, &file->error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	for (int i = 0; i < fit->n_ndf; i++) {
-		if (!status && result_add(&file->rows, &source, fit, &result[i]))
+		if (status == STATUS_OK && result_add(&file->rows, &source, fit, &result[i]))
 			status = error_set(&file->error, STATUS_NO_MEMORY, "out of memory");
 		fit_result_free(&result[i]);
 	}
@@ -123,7 +124,7 @@ static enum status process(struct run *run, struct batch_file *file)
 	}
 	enum status status = merl_read(file->path, fit.threads, &measurement, &file->error);
 	file->unread = status == STATUS_IO || status == STATUS_NO_MEMORY;
-	if (!status) {
+	if (status == STATUS_OK) {
 		result_input(file->input, &measurement);
 		const struct result_source source = batch_source(run->batch, file);
 		if (run->batch->store)
@@ -131,7 +132,7 @@ static enum status process(struct run *run, struct batch_file *file)
 		if (fit.n_ndf > 0)
 			status = fit_samples(run, file, &measurement, &fit);
 		measurement_free(&measurement);
-		if (status && status != STATUS_INTERRUPTED) {
+		if (status != STATUS_OK && status != STATUS_INTERRUPTED) {
 			char name[TEXT_QUOTE_SIZE];
 			const struct error why = file->error;
 			text_quote(file->path, name, sizeof name);
@@ -176,7 +177,7 @@ static void *work(void *argument)
 			read_ahead(upcoming);
 		const enum status status = process(run, &batch->file[i]);
 		pthread_mutex_lock(&run->lock);
-		if (!status)
+		if (status == STATUS_OK)
 			run->finished[run->n_finished++] = i;
 		pthread_cond_signal(&run->ended);
 	}

@@ -73,7 +73,7 @@ enum status distribution_source_read(const struct options *options, struct distr
 	*source = (struct distribution_source){0};
 	if (options->from)
 		status = model_source_read(options, NULL, &source->models, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	const size_t n = options->from ? source->models.n : 1;
 	source->item = calloc(n, sizeof *source->item);
@@ -81,10 +81,10 @@ enum status distribution_source_read(const struct options *options, struct distr
 		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
 	else if (!options->from)
 		status = describe(options, &source->item[0], error);
-	for (size_t i = 0; !status && options->from && i < n; i++)
+	for (size_t i = 0; status == STATUS_OK && options->from && i < n; i++)
 		take(&source->models.model[i], &source->item[i]);
 	source->n = n;
-	if (status)
+	if (status != STATUS_OK)
 		distribution_source_free(source);
 	return status;
 }

@@ -27,29 +27,29 @@ static int material_order(char *const *a, char *const *b)
 }
 
 /* A row and where it stood, so that the NDFs of a material keep their order. */
-struct place {
+struct indexed_row {
 	char **row;
 	size_t index;
 };
 
-static int place_order(const void *a, const void *b)
+static int indexed_row_order(const void *a, const void *b)
 {
-	const struct place *x = a, *y = b;
+	const struct indexed_row *x = a, *y = b;
 	const int order = material_order(x->row, y->row);
 	return order ? order : (x->index > y->index) - (x->index < y->index);
 }
 
 static enum status sort_rows(struct csv_table *rows)
 {
-	struct place *place = calloc(rows->n_rows + 1, sizeof(*place));
-	if (!place)
+	struct indexed_row *indexed = calloc(rows->n_rows + 1, sizeof(*indexed));
+	if (!indexed)
 		return STATUS_NO_MEMORY;
 	for (size_t i = 0; i < rows->n_rows; i++)
-		place[i] = (struct place){rows->row[i], i};
-	qsort(place, rows->n_rows, sizeof(*place), place_order);
+		indexed[i] = (struct indexed_row){rows->row[i], i};
+	qsort(indexed, rows->n_rows, sizeof(*indexed), indexed_row_order);
 	for (size_t i = 0; i < rows->n_rows; i++)
-		rows->row[i] = place[i].row;
-	free(place);
+		rows->row[i] = indexed[i].row;
+	free(indexed);
 	return STATUS_OK;
 }
 
@@ -135,9 +135,9 @@ static int fit_rows(struct csv_table *rows, const struct options *options)
 		return EXIT_FAILED;
 	struct error error;
 	enum status status = output_directory_spares(options->output, "fits.csv", files.path, (int)files.n, &error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = output_directory_takes(options->output, "fits.csv", &error);
-	if (status) {
+	if (status != STATUS_OK) {
 		files_free(&files);
 		if (status == STATUS_DOMAIN)
 			return options_usage(options->command, "%s", error.text);
@@ -165,7 +165,7 @@ static enum status keep_rows(const struct csv_table *rows, const char *directory
 	char *path;
 	if (asprintf(&path, "%s/fits.csv", directory) < 0)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	const enum status status = store_write(path, rows, report_csv, error);
+	const enum status status = store_write(path, rows, csv_write, error);
 	free(path);
 	return status;
 }
@@ -176,7 +176,7 @@ int materials_collect(struct materials *materials, const struct options *options
 	*materials = (struct materials){.rows = csv_table_make(result_columns, RESULT_COLUMNS)};
 	for (int i = 0; i < options->n_paths; i++)
 		table |= csv_is_name(options->path[i]);
-	materials->told = !table;
+	materials->reported = !table;
 	int code = (table ? read_rows : fit_rows)(&materials->rows, options);
 	if (sort_rows(&materials->rows) || group_rows(materials)) {
 		report_error("out of memory");
@@ -223,7 +223,7 @@ static enum status read_models(const struct material *material, int threads, str
 		fit->options.threads = threads;
 		data->n++;
 		const enum status status = result_model(row, &fit->model, &fit->options, &fit->pwl, &why);
-		if (status)
+		if (status != STATUS_OK)
 			return error_set(error, status, "cannot show '%s', %.16s: %.200s", name, fit->ndf, why.text);
 	}
 	if (data->n == 0)
@@ -236,10 +236,10 @@ static enum status read_samples(const struct material *material, int threads, st
 {
 	char *const *row = material->row[0];
 	enum status status = merl_read(row[RESULT_PATH], threads, measurement, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	status = result_check_input(row[RESULT_INPUT], measurement, row[RESULT_PATH], error);
-	if (status)
+	if (status != STATUS_OK)
 		measurement_free(measurement);
 	return status;
 }
@@ -248,9 +248,9 @@ enum status material_read(const struct material *material, int threads, struct m
 {
 	*data = (struct material_data){.name = material->name};
 	enum status status = read_models(material, threads, data, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = read_samples(material, threads, &data->measurement, error);
-	if (status)
+	if (status != STATUS_OK)
 		material_data_free(data);
 	return status;
 }

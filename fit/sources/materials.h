@@ -21,7 +21,7 @@ struct materials {
 	struct csv_table rows; /* in order of material, path, options, ndf as given */
 	struct material *material;
 	size_t n;
-	bool told; /* why a material has no fit: they were fitted just now */
+	bool reported; /* why a material has no fit: they were fitted just now */
 };
 
 /* materials_collect - rows of the one result table among the command's paths, or of a fit of its files.

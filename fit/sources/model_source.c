@@ -137,7 +137,7 @@ static enum status add_row(const struct options *options, char *const *row, size
 		return no_memory(error);
 	model->row = number;
 	const enum status status = result_model(row, &model->model, &model->fit, &model->pwl, &why);
-	if (status) {
+	if (status != STATUS_OK) {
 		char name[TEXT_QUOTE_SIZE];
 		text_quote(options->from, name, sizeof name);
 		return error_set(error, status, "'%s' row %zu: %.200s", name, number, why.text);
@@ -163,11 +163,11 @@ static enum status read_rows(const struct options *options, const char *material
 {
 	struct csv_table rows = csv_table_make(result_columns, RESULT_COLUMNS);
 	enum status status = csv_table_read(&rows, options->from, RESULT_SAMPLES, NULL, error);
-	for (size_t i = 0; i < rows.n_rows && !status; i++)
+	for (size_t i = 0; i < rows.n_rows && status == STATUS_OK; i++)
 		if (wanted(options, rows.row[i], i, material))
 			status = add_row(options, rows.row[i], i + 1, source, error);
 	csv_table_free(&rows);
-	return !status && !source->n ? no_row(options, material, error) : status;
+	return status == STATUS_OK && !source->n ? no_row(options, material, error) : status;
 }
 
 /* The one model of a file that `stdfit export --format json` wrote, whatever the material. */
@@ -178,7 +178,7 @@ static enum status read_json(const struct options *options, struct model_source 
 	if (!model)
 		return no_memory(error);
 	const enum status status = model_json_read(options->from, &json, &model->fit, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	model->model = json.model;
 	model->pwl = json.pwl;
@@ -214,15 +214,15 @@ static enum status fit_file(const struct options *options, const char *path, con
 	struct fit_result result[FIT_NDFS_MAX];
 	struct error why = {""};
 	enum status status = merl_read(path, options->fit.threads, &source->measurement, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	status = fit_context_new(&context, source->measurement.n_phi_d, &options->fit);
-	if (status)
+	if (status != STATUS_OK)
 		error_set(&why, status, "%s", status_str(status));
 	else
 		status = fit_run(context, &source->measurement, &options->fit, result, &why);
 	fit_context_free(context);
-	if (!status)
+	if (status == STATUS_OK)
 		return add_results(options, path, material, result, source, error);
 	char name[TEXT_QUOTE_SIZE];
 	text_quote(path, name, sizeof name);
@@ -249,7 +249,7 @@ enum status model_source_read(const struct options *options, const char *path, s
 	else
 		status = fit_file(options, path, material, source, error);
 	free(material);
-	if (status)
+	if (status != STATUS_OK)
 		model_source_free(source);
 	return status;
 }

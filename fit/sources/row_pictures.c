@@ -42,7 +42,7 @@ static enum status models_read(struct models *m, char **const *rows, size_t n, c
 			continue;
 		struct error why;
 		const enum status status = result_model(rows[i], &m->model[at], &fit, &m->pwl[at], &why);
-		if (status)
+		if (status != STATUS_OK)
 			return cannot(rows[i], status, why.text, error);
 		m->bins = fit.criterion.bins;
 		m->shown[at] = (struct pictures_model){&m->model[at], result_number(rows[i], RESULT_ERROR)};
@@ -69,11 +69,11 @@ static enum status read_samples(const struct models *m, char **const *rows, cons
 	if (!*path)
 		return cannot(rows[0], STATUS_NO_DATA, "the table has no path of its file", error);
 	enum status status = merl_read(path, options->threads, measurement, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
-	for (int i = 0; i < m->n && !status; i++)
+	for (int i = 0; i < m->n && status == STATUS_OK; i++)
 		status = result_check_input(rows[m->row[i]][RESULT_INPUT], measurement, path, error);
-	if (status)
+	if (status != STATUS_OK)
 		measurement_free(measurement);
 	return status;
 }
@@ -85,11 +85,11 @@ static enum status render(const struct models *m, char **const *rows, const stru
 		.size = SIZE, .samples = SAMPLES, .threads = options->threads, .cancel = options->cancel};
 	struct measurement measurement;
 	enum status status = read_samples(m, rows, options, &measurement, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	status = pictures_render(&measurement, m->bins, m->shown, m->n, SAMPLING_VISIBLE, light, &sphere, pictures);
 	measurement_free(&measurement);
-	return status ? cannot(rows[0], status, status_str(status), error) : STATUS_OK;
+	return status != STATUS_OK ? cannot(rows[0], status, status_str(status), error) : STATUS_OK;
 }
 
 enum status row_pictures_errors(char **const *rows, size_t n, const struct fit_options *options,
@@ -100,7 +100,7 @@ enum status row_pictures_errors(char **const *rows, size_t n, const struct fit_o
 	for (size_t i = 0; i < n; i++)
 		errors[i] = (struct picture_error){NAN, NAN, NAN};
 	enum status status = models_read(&models, rows, n, options, error);
-	if (!status && models.n)
+	if (status == STATUS_OK && models.n)
 		status = render(&models, rows, options, light, &pictures, error);
 	for (int i = 0; i < pictures.n; i++)
 		errors[models.row[i]] = pictures.error[i];
