@@ -626,6 +626,64 @@ static void params(void **state)
 	check_rel(ndf_make("t-family", 0.5, 0.5, 4.0).param[2], 2.0, 0.0, "x of t-family");
 }
 
+static int n_plain;
+
+static void check_plain(const struct ndf *ndf)
+{
+	struct ndf plain = {.gamma = 0.0};
+	if (ndf->sigma_x != ndf->sigma_y)
+		return;
+	if (!ndf_plain(ndf, &plain)) {
+		assert_true(plain.gamma == 0);
+		assert_true(!isinf(ndf->gamma));
+		return;
+	}
+	n_plain++;
+	assert_true(plain.class == ndf_find("ggx") || plain.class == ndf_find("beckmann"));
+	for (double theta = 1.0; theta < 90.0; theta += 11.0) {
+		const struct vec3 w = vec3_from_spherical_deg(theta, 17.0);
+		if (ndf_D(ndf, w) > 1e-200)
+			check_rel(ndf_D(&plain, w), ndf_D(ndf, w), 3e-13, "D of plain");
+		check_rel(ndf_G1(&plain, w), ndf_G1(ndf, w), 1e-11, "G1 of plain");
+	}
+}
+
+static void plain_is_the_same_distribution_by_another_name(void **state)
+{
+	(void)state;
+	for_all(check_plain);
+	/* std twice, ggx, beckmann, hyper-cauchy, t-family, gtr; six roughnesses each. */
+	assert_true(n_plain == 7 * 6);
+	struct ndf low = ndf_make("low", 0.3, 0.3, 2.0), rational = ndf_make("std", 0.3, 0.3, 2.0), plain;
+	assert_false(ndf_plain(&low, &plain));
+	assert_true(ndf_plain(&rational, &plain));
+	assert_int_equal(ndf_set_lambda_form(&rational, LAMBDA_RATIONAL), STATUS_OK);
+	assert_false(ndf_plain(&rational, &plain));
+}
+
+static void classes_that_are_Student_t_take_the_other_forms(void **state)
+{
+	(void)state;
+	for (int i = 0; ndf_at(i); i++) {
+		const struct ndf_class *class = ndf_at(i);
+		struct ndf ndf;
+		if (ndf_is_tabulated(class)) {
+			assert_false(ndf_is_student_t(class));
+			continue;
+		}
+		assert_int_equal(ndf_init(&ndf, class, 0.3, 0.3, 3.0), STATUS_OK);
+		assert_int_equal(ndf_set_lambda_form(&ndf, LAMBDA_RATIONAL),
+				 ndf_is_student_t(class) ? STATUS_OK : STATUS_UNSUPPORTED);
+		const struct ndf_param *second = ndf_param_at(class, 1);
+		assert_true((second && second->min == 1.5) == ndf_is_student_t(class));
+		for (int p = 0; ndf_param_at(class, p); p++) {
+			const struct ndf_param *param = ndf_param_at(class, p);
+			assert_true((param->role == NDF_ROLE_SIGMA) == !strcmp(param->name, "sigma"));
+			assert_true((param->role == NDF_ROLE_GAMMA) == !strcmp(param->name, "gamma"));
+		}
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -649,6 +707,8 @@ int main(void)
 		cmocka_unit_test(domain),
 		cmocka_unit_test(table),
 		cmocka_unit_test(params),
+		cmocka_unit_test(plain_is_the_same_distribution_by_another_name),
+		cmocka_unit_test(classes_that_are_Student_t_take_the_other_forms),
 	};
 	gsl_set_error_handler_off();
 	return cmocka_run_group_tests_name("ndf", tests, NULL, NULL);

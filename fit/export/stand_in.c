@@ -24,21 +24,10 @@ static void add_text(char text[EXPORT_TEXT], const char *format, ...)
 	va_end(list);
 }
 
-/* GGX or Beckmann where the distribution is one of them under another name; false where it is neither. */
-static bool plain_ndf(const struct ndf *ndf, struct ndf *plain)
+/* Of a plain distribution. */
+static bool is_beckmann(const struct ndf *plain)
 {
-	const char *name = ndf_name(ndf->class);
-	const bool ggx = ndf->gamma == 2.0 && strcmp(name, "low") != 0;
-	const bool beckmann = isinf(ndf->gamma);
-	if ((!ggx && !beckmann) || ndf->lambda_form == LAMBDA_RATIONAL)
-		return false;
-	const double sigma = ndf->sigma_x / ndf->stretch;
-	return ndf_init(plain, ndf_find(ggx ? "ggx" : "beckmann"), sigma, sigma, NAN) == STATUS_OK;
-}
-
-static bool is_beckmann(const struct ndf *ndf)
-{
-	return strcmp(ndf_name(ndf->class), "beckmann") == 0;
+	return isinf(plain->gamma);
 }
 
 /* What of the lobe has no counterpart. */
@@ -58,7 +47,7 @@ bool stand_in_needed(const struct target *target, const struct cook_torrance *mo
 	struct ndf plain;
 	if (!(export_max(model->ks) > 0))
 		return false;
-	if (!plain_ndf(&model->ndf, &plain) || (is_beckmann(&plain) && !target->beckmann))
+	if (!ndf_plain(&model->ndf, &plain) || (is_beckmann(&plain) && !target->beckmann))
 		describe_ndf(&model->ndf, text);
 	if (model->gaf != target->gaf)
 		add_text(text, " no %s G,", gaf_name(model->gaf));
@@ -88,7 +77,7 @@ const struct measurement *stand_in_samples(const struct export_source *source, s
 static void choose_ndfs(const struct target *target, const struct cook_torrance *model, struct fit_options *fit)
 {
 	struct ndf plain;
-	const bool known = plain_ndf(&model->ndf, &plain), beckmann = known && is_beckmann(&plain);
+	const bool known = ndf_plain(&model->ndf, &plain), beckmann = known && is_beckmann(&plain);
 	fit->n_ndf = 0;
 	if (!(target->beckmann && beckmann))
 		fit->ndf[fit->n_ndf++] = ndf_find("ggx");
@@ -276,7 +265,7 @@ static void take(struct export *export)
 {
 	struct ndf plain;
 	export->model = *export->source.model;
-	if (plain_ndf(&export->model.ndf, &plain))
+	if (ndf_plain(&export->model.ndf, &plain))
 		export->model.ndf = plain;
 }
 
