@@ -26,7 +26,7 @@ $(BUILD)/stdfit.exports: $(library_objects) $(public_headers) scripts/exports.sh
 $(BUILD)/$(shared): $(library_objects) $(BUILD)/stdfit.exports
 	@{ echo '{ global:'; sed 's/$$/;/' $(BUILD)/stdfit.exports; echo 'local: *; };'; } >$(BUILD)/stdfit.map
 	$(call quiet,LD)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -shared -Wl,-soname,$(soname) -Wl,-Bsymbolic \
-		-Wl,--version-script=$(BUILD)/stdfit.map -o $@ $(library_objects) $(LIBS)
+		-Wl,--version-script=$(BUILD)/stdfit.map -o $@ $(library_objects) $(LIBRARY_LIBS)
 
 # One object, in which only the public names are global.
 $(BUILD)/libstdfit.a: $(library_objects) $(BUILD)/stdfit.exports
