@@ -49,7 +49,7 @@ struct ndf_param {
 	enum ndf_role role;            /* of "sigma" and "gamma"; B, C and x have none */
 	double min, max;               /* domain, max included */
 	bool min_included;             /* whether min itself is allowed; no -> an open end */
-	double search_min, search_max; /* where a fit should look; equal when it should leave the value as it is */
+	double search_min, search_max; /* where a fit should search; equal when it should leave the value as it is */
 };
 
 /* struct ndf - one distribution with its parameters; filled by ndf_init() or ndf_init_params(), then only read. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* stdfit export, read back: MERL and JSON to the bit, Mitsuba, pbrt and glTF by what their numbers mean; stand-ins and
+/* stdfit export, read back: MERL and JSON to the bit, Mitsuba, pbrt and glTF by what their numbers mean; substitutes and
  * the errors they tell; refusals. The GLSL has a test of its own. Runs $STDFIT or build/stdfit. */
 #include "data_readers/merl.h"
 #include "fit/error/model_table.h"
@@ -209,7 +209,7 @@ static void mitsuba_says_what_it_can(void **state)
 	expect_mitsuba("--format mitsuba --kd 0.31,0.12,0.047", "exact: ", model);
 }
 
-static void mitsuba_gets_a_stand_in(void **state)
+static void mitsuba_gets_a_substitute(void **state)
 {
 	const struct cook_torrance truth = given("std", 0.2, 1.7, 1.5);
 
@@ -726,7 +726,7 @@ static void from_a_fit_and_from_its_row(void **state)
 	free(row);
 	export_it("--from fits.csv --row 2 --format json");
 	assert_string_equal(strstr(last.out, "\"ndf\": \"std\"") ? "std" : "other", "std");
-	/* The stand-in is fitted to the file that the row is of, and gets the errors of the table. */
+	/* The substitute is fitted to the file that the row is of, and gets the errors of the table. */
 	struct csv_table table = read_table("fits.csv");
 	export_it("--from fits.csv --row 2 --format mitsuba");
 	expect_out("against m.binary");
@@ -801,7 +801,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(mitsuba_says_what_it_can),
-		cmocka_unit_test(mitsuba_gets_a_stand_in),
+		cmocka_unit_test(mitsuba_gets_a_substitute),
 		cmocka_unit_test(mitsuba_blends_within_one),
 		cmocka_unit_test(xmllint_takes_it),
 		cmocka_unit_test(pbrt_says_what_it_can),

@@ -12,10 +12,10 @@ struct sums {
 };
 
 /* The entries of one row (theta_h, theta_d): measured m, model f and c = cos_i cos_o. */
-enum { ROW_MOST = 4 * 91 };
+enum { ROW_MAX = 4 * 91 };
 struct row {
 	int n;
-	double c[ROW_MOST], lobe[ROW_MOST], m[MERL_CHANNELS][ROW_MOST];
+	double c[ROW_MAX], lobe[ROW_MAX], m[MERL_CHANNELS][ROW_MAX];
 };
 
 /* Cube root to float precision, in a form that vectorises: a first guess from the exponent, two steps of Halley. */
@@ -81,7 +81,7 @@ static void sum_row(const struct row *row, const struct cook_torrance *model, do
 	sums->n += (size_t)row->n * MERL_CHANNELS;
 }
 
-/* Adds the valid entries of slot n to the row. */
+/* Adds the valid entries of sample n to the row. */
 static void add_entries(struct row *row, const struct geometry *g, const struct measurement *measurement, int n,
 			double c, double lobe)
 {
@@ -130,7 +130,7 @@ static double cos_product(const struct geometry *g, int n)
 	return (a - b) * (a + b);
 }
 
-/* c: cos_i cos_o of slot n. */
+/* c: cos_i cos_o of sample n. */
 static double lobe_at(const struct parts *p, const struct geometry *g, int n, double c)
 {
 	const double spread = p->D[g->row[n] / MERL_THETA_D] * p->F[g->row[n] % MERL_THETA_D];

@@ -81,7 +81,7 @@ static void set_sample(struct geometry *g, int n, int i, int j, int k, struct ve
 	g->k[n] = (uint16_t)k;
 }
 
-/* Fills in the slots of one theta_h from place n on, or only counts them when n < 0. */
+/* Fills in the samples of one theta_h from index n on, or only counts them when n < 0. */
 static int row_samples(struct geometry *g, int i, double min_cos, int n)
 {
 	const int last_k = g->bins == BINS_NODE ? 90 : 89;
@@ -158,18 +158,18 @@ static enum status table_alloc(struct sample_set *table, const struct geometry *
 {
 	const int pair_blocks = (n_pairs + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
 	const int single_blocks = (n_singles + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
-	const size_t slots = (size_t)(pair_blocks + single_blocks) * KERNEL_BLOCK;
+	const size_t samples = (size_t)(pair_blocks + single_blocks) * KERNEL_BLOCK;
 	const size_t values = (size_t)(2 * pair_blocks + single_blocks) * MERL_CHANNELS * KERNEL_BLOCK;
 
 	*table = (struct sample_set){.geometry = geometry,
 				     .n_blocks = pair_blocks + single_blocks,
 				     .n_pair_blocks = pair_blocks,
 				     .n_samples = n_pairs + n_singles};
-	table->q_i = aligned_alloc(64, slots * sizeof *table->q_i);
-	table->q_o = aligned_alloc(64, slots * sizeof *table->q_o);
-	table->geometric_factor = aligned_alloc(64, slots * sizeof *table->geometric_factor);
-	table->w = aligned_alloc(64, slots * sizeof *table->w);
-	table->row = aligned_alloc(64, slots * sizeof *table->row);
+	table->q_i = aligned_alloc(64, samples * sizeof *table->q_i);
+	table->q_o = aligned_alloc(64, samples * sizeof *table->q_o);
+	table->geometric_factor = aligned_alloc(64, samples * sizeof *table->geometric_factor);
+	table->w = aligned_alloc(64, samples * sizeof *table->w);
+	table->row = aligned_alloc(64, samples * sizeof *table->row);
 	table->value = aligned_alloc(64, values * sizeof *table->value);
 	if (!table->q_i || !table->q_o || !table->geometric_factor || !table->w || !table->row || !table->value) {
 		sample_set_free(table);
@@ -189,7 +189,7 @@ void sample_set_free(struct sample_set *table)
 	*table = (struct sample_set){0};
 }
 
-/* Fills the unused tail of the pairs, or of the singles, with slots that add nothing. */
+/* Fills the unused tail of the pairs, or of the singles, with samples that add nothing. */
 static void pad(struct sample_set *table, size_t from, int end_block)
 {
 	for (size_t n = from; n < (size_t)end_block * KERNEL_BLOCK; n++) {
@@ -212,7 +212,7 @@ static void pad_all(struct sample_set *table, size_t n_pairs, size_t n_singles)
 	pad(table, (size_t)table->n_pair_blocks * KERNEL_BLOCK + n_singles, table->n_blocks);
 }
 
-/* The valid entries of slot n, as offsets into the planes. */
+/* The valid entries of sample n, as offsets into the planes. */
 static int valid_members(const struct geometry *g, const struct measurement *measurement, int n, size_t at[4])
 {
 	int k[4], valid = 0;
@@ -228,7 +228,7 @@ static int valid_members(const struct geometry *g, const struct measurement *mea
 }
 
 struct fill {
-	size_t pair, single; /* next free place of each sort */
+	size_t pair, single; /* next free index of each sort */
 	double sum[MERL_CHANNELS], sum_w;
 };
 
@@ -278,10 +278,10 @@ static void keep_in_range(struct sample_set *table)
 	if (!(total > 1e30))
 		return;
 	const double scale = exp2(-ceil(log2(total * 1e-20)));
-	const size_t slots = (size_t)table->n_blocks * KERNEL_BLOCK;
+	const size_t samples = (size_t)table->n_blocks * KERNEL_BLOCK;
 	const size_t values = (size_t)(table->n_blocks + table->n_pair_blocks) * (size_t)MERL_CHANNELS * KERNEL_BLOCK;
 
-	for (size_t n = 0; n < slots; n++) {
+	for (size_t n = 0; n < samples; n++) {
 		table->geometric_factor[n] *= (float)scale;
 		table->w[n] *= (float)scale;
 	}
@@ -298,7 +298,7 @@ enum status sample_set_init(struct sample_set *table, const struct geometry *g, 
 	struct fill fill[MERL_THETA_H + 1] = {0};
 	enum status status;
 
-	/* Count first: each row then knows where its slots go, whatever thread fills it. */
+	/* Count first: each row then knows where its samples go, whatever thread fills it. */
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
 	for (int i = 0; i < MERL_THETA_H; i++)
 		for (int n = g->first[i]; n < g->first[i + 1]; n++) {
@@ -344,7 +344,7 @@ static bool is_padding(const struct sample_set *table, size_t n)
 	return table->w[n] == 0;
 }
 
-/* What is measured in slot n, as a share of the table's sum: channels count alike. */
+/* What is measured in sample n, as a share of the table's sum: channels count alike. */
 static double measured_share(const struct sample_set *table, size_t n)
 {
 	const int members = n < (size_t)table->n_pair_blocks * KERNEL_BLOCK ? 2 : 1;
@@ -397,8 +397,8 @@ static void copy_sample(struct sample_set *to, size_t b, const struct sample_set
 	}
 }
 
-/* Systematic sampling: slot n is taken when the running sum of p passes a whole number within it. */
-static bool taken(const float *p, size_t n, double *running)
+/* Systematic sampling: sample n is selected when the running sum of p passes a whole number within it. */
+static bool is_selected(const float *p, size_t n, double *running)
 {
 	const double before = floor(*running);
 
@@ -411,7 +411,7 @@ enum status sample_set_thin(struct sample_set *table, const struct sample_set *f
 	const size_t count = (size_t)full->n_blocks * KERNEL_BLOCK,
 		     pairs_end = (size_t)full->n_pair_blocks * KERNEL_BLOCK;
 	const double even = 1.0 / full->n_samples;
-	size_t n_taken[2] = {0, 0}, to[2];
+	size_t n_selected[2] = {0, 0}, to[2];
 	double running = 0.5;
 	enum status status;
 	float *p = malloc(count * sizeof *p);
@@ -422,17 +422,17 @@ enum status sample_set_thin(struct sample_set *table, const struct sample_set *f
 		p[n] = is_padding(full, n) ? 0 : (float)(n_samples * (0.75 * measured_share(full, n) + 0.25 * even));
 	scale_to(p, count, fmin(n_samples, full->n_samples));
 	for (size_t n = 0; n < count; n++)
-		n_taken[n >= pairs_end] += taken(p, n, &running);
-	status = table_alloc(table, full->geometry, (int)n_taken[0], (int)n_taken[1]);
+		n_selected[n >= pairs_end] += is_selected(p, n, &running);
+	status = table_alloc(table, full->geometry, (int)n_selected[0], (int)n_selected[1]);
 	if (status != STATUS_OK)
 		goto out;
 	to[0] = 0;
 	to[1] = (size_t)table->n_pair_blocks * KERNEL_BLOCK;
 	running = 0.5;
 	for (size_t n = 0; n < count; n++)
-		if (taken(p, n, &running))
+		if (is_selected(p, n, &running))
 			copy_sample(table, to[n >= pairs_end]++, full, n, n < pairs_end ? 2 : 1, 1 / p[n]);
-	pad_all(table, n_taken[0], n_taken[1]);
+	pad_all(table, n_selected[0], n_selected[1]);
 	memcpy(table->sum, full->sum, sizeof table->sum);
 	table->sum_w = full->sum_w;
 	table->n_entries = full->n_entries;

@@ -31,8 +31,8 @@ static double weighted_median(struct wanted *wanted, size_t n)
 }
 
 /* The lobe and the weight at each entry that takes part, as lobe = kd in *wanted; at[] says which entries. */
-static size_t look(const struct measurement *measurement, const struct fit_options *fit,
-		   const struct cook_torrance *model, struct wanted *wanted, size_t *at)
+static size_t lobe_and_weight(const struct measurement *measurement, const struct fit_options *fit,
+			      const struct cook_torrance *model, struct wanted *wanted, size_t *at)
 {
 	const struct entries entries = entries_make(fit->bins, measurement->n_phi_d);
 	const double min_cos = max_theta_cos(fit->max_theta);
@@ -61,7 +61,7 @@ enum status gray_specular(const struct measurement *measurement, const struct fi
 	struct wanted *wanted = calloc(measurement_count(measurement), sizeof *wanted);
 	size_t *at = calloc(measurement_count(measurement), sizeof *at);
 	const bool ready = lobe && wanted && at;
-	const size_t n = ready ? look(measurement, fit, model, lobe, at) : 0;
+	const size_t n = ready ? lobe_and_weight(measurement, fit, model, lobe, at) : 0;
 	for (int c = 0; c < MERL_CHANNELS && ready; c++) {
 		for (size_t i = 0; i < n; i++) {
 			const double rest = (double)measurement->value[c][at[i]] - ks * (double)lobe[i].kd;

@@ -42,7 +42,7 @@ void measured_free(struct measured *m)
 	*m = (struct measured){0};
 }
 
-/* The entries on either side of a place, and the share of the second. */
+/* The entries on either side of a point, and the share of the second. */
 struct bracket {
 	int low, high;
 	double share;
