@@ -21,6 +21,8 @@ static inline float g1_at(const struct kernel_g1 *g1, const float *restrict valu
 	return value[index] + fraction * (value[index + 1] - value[index]);
 }
 
+/* The specular term as cook_torrance_from_G1() puts it together, in float and from tables;
+ * kernel_and_metrics_match_the_reference in tests/test_objective.c holds both against cook_torrance_f(). */
 static void lobe_separable(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_samples *samples,
 			   float *restrict s)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/error/metrics.h"
+#include "fit/error/error_sum.h"
 #include "fit/error/masking.h"
 #include <math.h>
 #include <stdlib.h>
@@ -47,11 +48,11 @@ static void sum_row(const struct row *row, const struct cook_torrance *model, do
 
 #pragma omp simd reduction(+ : d_none, d_cosine, m_none, m_cosine, square, root)
 		for (int n = 0; n < row->n; n++) {
-			const double f = kd + ks * row->lobe[n], r = fabs(m[n] - f), w = row->c[n];
+			const double f = kd + ks * row->lobe[n], w = row->c[n], r = error_term(1, m[n], f);
 			const float step = cube_root((float)(w * m[n])) - cube_root((float)(w * f));
 
 			d_none += r;
-			d_cosine += w * r;
+			d_cosine += error_term(w, m[n], f);
 			m_none += m[n];
 			m_cosine += w * m[n];
 			square += w * w * r * r;
@@ -89,7 +90,7 @@ static void add_entries(struct row *row, const struct geometry *g, const struct 
 	const int count = geometry_members(g, n, k);
 
 	for (int a = 0; a < count; a++) {
-		const size_t at = (size_t)g->row[n] * (size_t)g->n_phi_d + (size_t)k[a];
+		const size_t at = measurement_at(g->n_phi_d, 0, g->row[n], k[a]);
 
 		if (isnan(measurement->value[0][at]))
 			continue;
@@ -138,11 +139,8 @@ static double lobe_at(const struct parts *p, const struct geometry *g, int n, do
 	/* geometric_factor and w both carry the weight of the fit; geometric_factor alone has the v-groove's G. */
 	if (g->gaf == GAF_V_GROOVE)
 		return spread * (double)g->geometric_factor[n] / (double)g->w[n];
-	const double i = masking_at(&p->masking, g->q_i[n]), o = masking_at(&p->masking, g->q_o[n]);
-
-	if (g->gaf == GAF_UNCORRELATED)
-		return spread * i * o / (4 * c);
-	return i > 0 && o > 0 ? spread / (4 * c * (1 / i + 1 / o - 1)) : 0;
+	return cook_torrance_from_G1(g->gaf, spread, masking_at(&p->masking, g->q_i[n]),
+				     masking_at(&p->masking, g->q_o[n]), c);
 }
 
 /* One theta_h, all its rows into sums[0] or each into sums[its theta_d]. */
@@ -190,7 +188,7 @@ enum status metrics_compute(const struct geometry *g, const struct measurement *
 	if (!(all.measured[WEIGHT_COSINE] > 0))
 		return STATUS_NO_DATA;
 	for (int w = 0; w < WEIGHT_COUNT; w++)
-		metrics->error[w] = all.difference[w] / all.measured[w];
+		metrics->error[w] = error_ratio(all.difference[w], all.measured[w]);
 	metrics->rms_cosine = sqrt(all.square / (double)all.n);
 	metrics->rms_cube_root = sqrt(all.cube_root / (double)all.n);
 	metrics->log_error = all.log / (double)all.n;

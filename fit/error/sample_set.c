@@ -9,8 +9,8 @@ static const double degree = M_PI / 180;
 
 double cell_measure(int i, int j)
 {
-	const double h0 = i * i / 90.0 * degree, h1 = (i + 1) * (i + 1) / 90.0 * degree;
-	const double d0 = j * degree, d1 = (j + 1) * degree;
+	const struct halfdiff low = bins_angles(BINS_NODE, i, j, 0), high = bins_angles(BINS_NODE, i + 1, j + 1, 0);
+	const double h0 = low.theta_h, h1 = high.theta_h, d0 = low.theta_d, d1 = high.theta_d;
 	/* cos a - cos b and (sin^2 b - sin^2 a)/2 as products: no cancellation in narrow cells. */
 	const double w_h = 2 * M_PI * 2 * sin((h0 + h1) / 2) * sin((h1 - h0) / 2);
 	const double w_d = sin(d0 + d1) * sin(d1 - d0) / 2;
@@ -31,15 +31,9 @@ double weight_at(enum weight weight, int i, int j, double cos_i, double cos_o)
 	}
 }
 
-/* Entries k and half - k have the same model value; at centres the mirror of k is half - 1 - k. */
-static int mirror(enum bins bins, int k)
-{
-	return (bins == BINS_NODE ? 180 : 179) - k;
-}
-
 int geometry_members(const struct geometry *geometry, int n, int k[4])
 {
-	const int first = geometry->k[n], second = mirror(geometry->bins, first);
+	const int first = geometry->k[n], second = bins_mirror(geometry->bins, first);
 	int count = 0;
 
 	k[count++] = first;
@@ -75,7 +69,7 @@ static void set_sample(struct geometry *g, int n, int i, int j, int k, struct ve
 
 	g->q_i[n] = masking_q(wi);
 	g->q_o[n] = masking_q(wo);
-	g->geometric_factor[n] = (float)(w * G / (4 * wi.z * wo.z));
+	g->geometric_factor[n] = (float)cook_torrance_from_G(w, G, wi.z * wo.z);
 	g->w[n] = (float)w;
 	g->row[n] = (uint16_t)(j + MERL_THETA_D * i);
 	g->k[n] = (uint16_t)k;
@@ -84,7 +78,7 @@ static void set_sample(struct geometry *g, int n, int i, int j, int k, struct ve
 /* Fills in the samples of one theta_h from index n on, or only counts them when n < 0. */
 static int row_samples(struct geometry *g, int i, double min_cos, int n)
 {
-	const int last_k = g->bins == BINS_NODE ? 90 : 89;
+	const int last_k = bins_mirror(g->bins, 0) / 2; /* the last one before its own mirror, or on it */
 	struct vec3 wi, wo;
 	int count = 0;
 
@@ -219,7 +213,7 @@ static int valid_members(const struct geometry *g, const struct measurement *mea
 	const int count = geometry_members(g, n, k);
 
 	for (int a = 0; a < count; a++) {
-		const size_t entry = (size_t)g->row[n] * (size_t)g->n_phi_d + (size_t)k[a];
+		const size_t entry = measurement_at(g->n_phi_d, 0, g->row[n], k[a]);
 
 		if (!isnan(measurement->value[0][entry]))
 			at[valid++] = entry;

@@ -21,7 +21,7 @@ struct geometry {
 	int32_t *q_i, *q_o;          /* masking_q() of wi and wo */
 	float *geometric_factor;     /* w / (4 cos_i cos_o), times G for GAF_V_GROOVE */
 	float *w;                    /* weight of an entry */
-	uint16_t *row;               /* theta_d index + 90 theta_h index */
+	uint16_t *row;               /* theta_d index + 90 theta_h index: j of measurement_at() for i = 0 */
 	uint16_t *k;                 /* phi_d index of the first entry of the sample */
 	int first[MERL_THETA_H + 1]; /* samples of theta_h index i are first[i] .. first[i + 1] - 1 */
 	int32_t q_min;               /* smallest q of all samples */

@@ -5,6 +5,7 @@
  * D of GGX with sigma = roughness^2, G height-correlated: so every export is approximate, and its error is measured with
  * that formula. s = max ks, specularColor = ks/s. */
 #include "fit/error/entries.h"
+#include "fit/error/error_sum.h"
 #include "fit/error/sample_set.h"
 #include "fit/export/export_format.h"
 #include "fit/export/substitute.h"
@@ -55,7 +56,7 @@ static void add_row(const struct export *export, const struct measurement *measu
 			gltf_f(&export->model, wi, wo, f);
 			const double w = weight_at(fit->weight, i, j, wi.z, wo.z);
 			for (int c = 0; c < MERL_CHANNELS; c++) {
-				sum[0] += w * fabs((double)measurement->value[c][at] - f[c]);
+				sum[0] += error_term(w, (double)measurement->value[c][at], f[c]);
 				sum[1] += w * (double)measurement->value[c][at];
 			}
 		}
@@ -73,7 +74,7 @@ static double gltf_error(const struct export *export, const struct measurement *
 		difference += sum[i][0];
 		all += sum[i][1];
 	}
-	return difference / all;
+	return error_ratio(difference, all);
 }
 
 static enum status gltf_prepare(struct export *export, struct error *error)

@@ -23,16 +23,12 @@ struct reading {
 static double lobe_per_D(const struct reading *r, struct vec3 wi, struct vec3 wo, double F)
 {
 	const struct cook_torrance *model = r->model;
-	double G;
+	const double cosines = wi.z * wo.z;
 
-	if (model->gaf == GAF_V_GROOVE) {
-		G = gaf_G(GAF_V_GROOVE, &model->ndf, wi, wo);
-	} else {
-		const double i = masking_at(&r->masking, masking_q(wi)), o = masking_at(&r->masking, masking_q(wo));
-
-		G = model->gaf == GAF_UNCORRELATED ? i * o : 1 / (1 / i + 1 / o - 1);
-	}
-	return F * G / (4 * wi.z * wo.z);
+	if (model->gaf == GAF_V_GROOVE)
+		return cook_torrance_from_G(F, gaf_G(GAF_V_GROOVE, &model->ndf, wi, wo), cosines);
+	return cook_torrance_from_G1(model->gaf, F, masking_at(&r->masking, masking_q(wi)),
+				     masking_at(&r->masking, masking_q(wo)), cosines);
 }
 
 /* The wishes of entry (i, j, k), one a channel; returns how many. */
