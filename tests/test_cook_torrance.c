@@ -184,12 +184,36 @@ static void errors(void **state)
 	}
 }
 
+static void lobe_from_tabulated_factors_is_the_lobe(void **state)
+{
+	(void)state;
+	for (enum gaf gaf = 0; gaf < GAF_COUNT; gaf++)
+		for (int n = 0; n < 60; n++) {
+			struct cook_torrance model = {.gaf = gaf, .fresnel = FRESNEL_DIELECTRIC, .n = 1.5};
+			assert_int_equal(ndf_init(&model.ndf, ndf_find("std"), 0.3, 0.3, 1.8), STATUS_OK);
+			const struct vec3 wi = vec3_from_spherical_deg(1.5 * n, 10.0);
+			const struct vec3 wo = vec3_from_spherical_deg(89.5 - n, 3.0 * n);
+			const struct vec3 sum = vec3_add(wi, wo);
+			const double F = fresnel_F(model.fresnel, 0.5 * vec3_length(sum), model.n, 0.0);
+			const double DF = F * ndf_D(&model.ndf, vec3_unit(sum)), cosines = wi.z * wo.z;
+			const double want = cook_torrance_lobe(&model, wi, wo);
+			check_rel(cook_torrance_from_G(DF, gaf_G(gaf, &model.ndf, wi, wo), cosines), want, 1e-13, "G");
+			if (gaf == GAF_V_GROOVE)
+				continue;
+			check_rel(
+				cook_torrance_from_G1(gaf, DF, ndf_G1(&model.ndf, wi), ndf_G1(&model.ndf, wo), cosines),
+				want, 1e-13, "G1");
+		}
+	assert_true(cook_torrance_from_G1(GAF_CORRELATED, 1.0, 0.0, 0.5, 0.25) == 0.0);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(product_of_parts), cmocka_unit_test(reciprocity), cmocka_unit_test(by_hand),
-		cmocka_unit_test(horizon),          cmocka_unit_test(v_groove),    cmocka_unit_test(names),
-		cmocka_unit_test(errors),
+		cmocka_unit_test(product_of_parts), cmocka_unit_test(reciprocity),
+		cmocka_unit_test(by_hand),          cmocka_unit_test(horizon),
+		cmocka_unit_test(v_groove),         cmocka_unit_test(names),
+		cmocka_unit_test(errors),           cmocka_unit_test(lobe_from_tabulated_factors_is_the_lobe),
 	};
 	return cmocka_run_group_tests_name("cook_torrance", tests, NULL, NULL);
 }

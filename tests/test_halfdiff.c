@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
+#include "data_readers/measurement.h"
 #include "src/halfdiff.h"
 
 static struct vec3 turned_about_z(struct vec3 v, double angle)
@@ -166,11 +167,27 @@ static void spherical(void **state)
 	assert_true(isnan(vec3_from_spherical_deg(30.0, INFINITY).x));
 }
 
+static void indices_and_angles_of_entries_are_inverse(void **state)
+{
+	(void)state;
+	for (enum bins bins = 0; bins < BINS_COUNT; bins++)
+		for (int i = 0; i < 90; i++) {
+			const struct bins_indices at = bins_indices(bins, bins_angles(bins, i, 89 - i, 3 * i));
+			check_abs(at.i, i, 1e-12, "i");
+			check_abs(at.j, 89 - i, 1e-12, "j");
+			check_abs(at.k, 3 * i, 1e-12, "k");
+			const double phi = bins_angles(bins, 0, 0, i).phi_d;
+			const double mirrored = bins_angles(bins, 0, 0, bins_mirror(bins, i)).phi_d;
+			check_abs(phi + mirrored, M_PI, 1e-14, "mirror");
+		}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(round_trip), cmocka_unit_test(swap),      cmocka_unit_test(edges),
-		cmocka_unit_test(degrees),    cmocka_unit_test(spherical),
+		cmocka_unit_test(round_trip), cmocka_unit_test(swap),
+		cmocka_unit_test(edges),      cmocka_unit_test(degrees),
+		cmocka_unit_test(spherical),  cmocka_unit_test(indices_and_angles_of_entries_are_inverse),
 	};
 	return cmocka_run_group_tests_name("halfdiff", tests, NULL, NULL);
 }
