@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* html - text and files inside a page. Failures to write show in ferror(). */
+/* html - text and files inside a page. Failures to write show in ferror().
+ * By hand: one page is written, and nothing is parsed. */
 #ifndef HTML_H
 #define HTML_H
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* csv - tables of text cells in RFC 4180's form (lines end with a newline alone). */
+/* csv - tables of text cells in RFC 4180's form (lines end with a newline alone).
+ * By hand: a batch that was killed resumes from it, whole rows only, and errors name row and column. */
 #ifndef CSV_H
 #define CSV_H
 
