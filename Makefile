@@ -6,15 +6,17 @@ VERSION := 0.2.0
 CC ?= cc
 BUILD ?= build
 OPT ?= -O2 -g
+# Of the library; the program needs more.
 PKGS := nlopt gsl libxxhash
 PKG_CONFIG ?= pkg-config
 WERROR ?= -Werror
 # Pictures as PNG where libpng is installed; `make PNG=` does without.
 PNG := $(shell $(PKG_CONFIG) --exists libpng 2>/dev/null && echo yes)
-PKGS += $(if $(PNG),libpng)
+PROGRAM_PKGS := jansson $(if $(PNG),libpng)
 # Asked once; empty before the set-up has run, when only `setup` is made.
-pkg_cflags := $(shell $(PKG_CONFIG) --cflags $(PKGS) 2>/dev/null) $(if $(PNG),-DHAVE_LIBPNG)
-pkg_libs := $(shell $(PKG_CONFIG) --libs $(PKGS) 2>/dev/null)
+pkg_cflags := $(shell $(PKG_CONFIG) --cflags $(PKGS) $(PROGRAM_PKGS) 2>/dev/null) $(if $(PNG),-DHAVE_LIBPNG)
+pkg_libs := $(shell $(PKG_CONFIG) --libs $(PKGS) $(PROGRAM_PKGS) 2>/dev/null)
+library_pkg_libs := $(shell $(PKG_CONFIG) --libs $(PKGS) 2>/dev/null)
 # make V=1 shows the commands.
 quiet = $(if $(V),,@echo '  $(1)	$@';)
 
@@ -26,6 +28,7 @@ picflags := -fPIC -fno-semantic-interposition
 ALL_CFLAGS = -std=c11 -D_GNU_SOURCE $(warnings) $(OPT) -fopenmp $(fpflags) $(picflags) -I. \
 	$(pkg_cflags) -DSTDFIT_VERSION='"$(VERSION)"' $(CFLAGS_$(basename $(@F))) $(CFLAGS)
 LIBS = $(pkg_libs) -lm
+LIBRARY_LIBS = $(library_pkg_libs) -lm
 
 # Each uses only those before it.
 folders := src data_readers $(addprefix fit/,error search api results export render cli sources plot page commands)

@@ -61,16 +61,35 @@ void measurement_free(struct measurement *measurement)
 	*measurement = (struct measurement){0};
 }
 
-/* Where entry (i, j, k) stands in degrees, all exact: the one place that knows both conventions. */
+/* From an index to the middle of what it stands for. */
+static double shift_of(enum bins bins)
+{
+	return bins == BINS_CENTRE ? 0.5 : 0.0;
+}
+
+/* Where entry (i, j, k) stands in degrees, all exact. Conversions are in this file alone. */
 struct bin_centre {
 	double theta_h_times_90, theta_d, phi_d;
 };
 
 static struct bin_centre bin_centre(enum bins bins, int i, int j, int k)
 {
-	const double shift = bins == BINS_CENTRE ? 0.5 : 0.0;
+	const double shift = shift_of(bins);
 
 	return (struct bin_centre){(i + shift) * (i + shift), j + shift, k + shift};
+}
+
+struct bins_indices bins_indices(enum bins bins, struct halfdiff angles)
+{
+	const double degrees = 180 / M_PI, shift = shift_of(bins);
+
+	return (struct bins_indices){sqrt(90 * degrees * angles.theta_h) - shift, degrees * angles.theta_d - shift,
+				     degrees * angles.phi_d - shift};
+}
+
+int bins_mirror(enum bins bins, int k)
+{
+	return (bins == BINS_CENTRE ? 179 : 180) - k;
 }
 
 struct halfdiff bins_angles(enum bins bins, int i, int j, int k)

@@ -54,6 +54,15 @@ static inline size_t measurement_at(int n_phi_d, int i, int j, int k)
 /* bins_angles - theta_h, theta_d, phi_d (radians) of entry (i, j, k); 0 <= i, j < 90, 0 <= k < n_phi_d. */
 struct halfdiff bins_angles(enum bins bins, int i, int j, int k);
 
+/* bins_indices - the inverse: where angles lie between the entries, as real i, j, k, unbounded. */
+struct bins_indices {
+	double i, j, k;
+};
+struct bins_indices bins_indices(enum bins bins, struct halfdiff angles);
+
+/* bins_mirror - the k of 180 degrees - phi_d of entry k; an entry with the same model value. May be n_phi_d or more. */
+int bins_mirror(enum bins bins, int k);
+
 /* bins_trig - sines and cosines of theta_h, theta_d and phi_d of entry (i, j, k), to the last ulp or two:
  * above 45 degrees taken from the complement, and exactly 0 or 1 where the angle says so. */
 struct halfdiff_trig bins_trig(enum bins bins, int i, int j, int k);

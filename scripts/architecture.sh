@@ -67,6 +67,9 @@ look_through() {
 	{ lines[here]++ }
 	/^[ \t]*#[ \t]*include[ \t]*"/ {
 		split($0, quoted, "\"")
+		# The public header stands above the rooms; fit/api is what is behind it.
+		if (quoted[2] == "fit/stdfit.h" && here == "fit/api")
+			next
 		there = folder(quoted[2])
 		includes[FILENAME] = includes[FILENAME] " " quoted[2]
 		if (!(there in rank))

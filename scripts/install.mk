@@ -14,9 +14,6 @@ library_objects := $(filter $(foreach f,$(library_folders),$(patsubst %.c,$(BUIL
 	%/kernel_avx2.o,$(lib_objects))
 # What the public header declares is exported, and nothing else.
 public_headers := fit/stdfit.h
-# What the library itself is linked with: pictures are the program's.
-library_pkgs := nlopt gsl libxxhash
-library_libs := $(shell $(PKG_CONFIG) --libs $(library_pkgs) 2>/dev/null) -lm
 shared := libstdfit.so.$(VERSION)
 soname := libstdfit.so.$(firstword $(subst ., ,$(VERSION)))
 
@@ -29,7 +26,7 @@ $(BUILD)/stdfit.exports: $(library_objects) $(public_headers) scripts/exports.sh
 $(BUILD)/$(shared): $(library_objects) $(BUILD)/stdfit.exports
 	@{ echo '{ global:'; sed 's/$$/;/' $(BUILD)/stdfit.exports; echo 'local: *; };'; } >$(BUILD)/stdfit.map
 	$(call quiet,LD)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -shared -Wl,-soname,$(soname) -Wl,-Bsymbolic \
-		-Wl,--version-script=$(BUILD)/stdfit.map -Wl,--as-needed -o $@ $(library_objects) $(library_libs)
+		-Wl,--version-script=$(BUILD)/stdfit.map -Wl,--as-needed -o $@ $(library_objects) $(LIBRARY_LIBS)
 
 # One object, in which only the public names are global.
 $(BUILD)/libstdfit.a: $(library_objects) $(BUILD)/stdfit.exports
@@ -49,7 +46,7 @@ install: all library
 	ln -sf $(shared) "$(DESTDIR)$(libdir)/libstdfit.so"
 	$(call put,644,$(BUILD)/libstdfit.a,$(libdir))
 	$(call put,644,$(public_headers),$(includedir)/stdfit)
-	sed 's,@PREFIX@,$(PREFIX),; s,@LIBDIR@,$(libdir),; s,@INCLUDEDIR@,$(includedir),; s,@VERSION@,$(VERSION),; s,@REQUIRES@,$(library_pkgs),' \
+	sed 's,@PREFIX@,$(PREFIX),; s,@LIBDIR@,$(libdir),; s,@INCLUDEDIR@,$(includedir),; s,@VERSION@,$(VERSION),; s,@REQUIRES@,$(PKGS),' \
 		scripts/stdfit.pc.in >$(BUILD)/stdfit.pc
 	$(call put,644,$(BUILD)/stdfit.pc,$(libdir)/pkgconfig)
 	$(call put,644,$(BUILD)/stdfit.1,$(datadir)/man/man1)

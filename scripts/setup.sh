@@ -6,8 +6,8 @@
 set -u
 
 target=${1:-}
-libraries='nlopt gsl libxxhash cmocka'
-packages='gcc make libc6-dev pkg-config libnlopt-dev libgsl-dev libxxhash-dev libcmocka-dev'
+libraries='nlopt gsl libxxhash jansson cmocka'
+packages='gcc make libc6-dev pkg-config libnlopt-dev libgsl-dev libxxhash-dev libjansson-dev libcmocka-dev'
 # What the program or a test can do without.
 optional='libpng-dev gnuplot-nox'
 tools=

@@ -26,6 +26,21 @@ struct cook_torrance {
  * overflows, and so may this. */
 double cook_torrance_lobe(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo);
 
+/* cook_torrance_from_G, cook_torrance_from_G1 - the same term put together by callers that have its factors in tables, for
+ * cosines above 1e-9: from D F and G, or from D F and G1 of either direction (not for GAF_V_GROOVE).
+ * cosines: cos_i cos_o. */
+static inline double cook_torrance_from_G(double DF, double G, double cosines)
+{
+	return DF * G / (4 * cosines);
+}
+
+static inline double cook_torrance_from_G1(enum gaf gaf, double DF, double G1_i, double G1_o, double cosines)
+{
+	if (gaf == GAF_UNCORRELATED)
+		return DF * G1_i * G1_o / (4 * cosines);
+	return G1_i > 0 && G1_o > 0 ? DF / (4 * cosines * (1 / G1_i + 1 / G1_o - 1)) : 0;
+}
+
 /* cook_torrance_f - the BRDF in three channels, 1/sr; all 0 unless cos_i, cos_o > 0. */
 void cook_torrance_f(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo, double f[3]);
 

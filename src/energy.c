@@ -186,19 +186,19 @@ static double cos_at(double x)
 	return cot / sqrt(1.0 + cot * cot);
 }
 
-static struct direction look(struct surface *surface, double x)
+static struct direction evaluate(struct surface *surface, double x)
 {
 	return (struct direction){x, lobe_albedo(surface, cos_at(x), TOLERANCE_MANY)};
 }
 
-/* Golden sections of the octaves on either side of a maximum of the coarse looks. */
+/* Golden sections of the octaves on either side of a maximum of the coarse evaluations. */
 static struct direction refine(struct surface *surface, struct direction best)
 {
 	const double golden = 0.38196601125010515;
 	double low = best.x - 1.0, high = best.x + 1.0;
 	for (int i = 0; i < REFINEMENTS; i++) {
 		const bool right = high - best.x > best.x - low;
-		const struct direction next = look(surface, best.x + golden * ((right ? high : low) - best.x));
+		const struct direction next = evaluate(surface, best.x + golden * ((right ? high : low) - best.x));
 		if (next.lobe > best.lobe) {
 			*(right ? &low : &high) = best.x;
 			best = next;
@@ -219,10 +219,10 @@ enum status energy_albedo_max(const struct cook_torrance *model, double albedo[3
 	const double end = 10.0 - fmin(log2(surface.median), 0.0);
 	const double normal = lobe_albedo(&surface, 1.0, TOLERANCE_MANY);
 	const double grazing = lobe_albedo(&surface, 0.0, TOLERANCE_MANY);
-	struct direction best = {0.0, -1.0}, before = {0.0, normal}, at = look(&surface, -3.0);
+	struct direction best = {0.0, -1.0}, before = {0.0, normal}, at = evaluate(&surface, -3.0);
 	/* There may be several maxima: one inside and one at either end. */
 	for (double x = -2.0; x < end; x++) {
-		const struct direction next = look(&surface, x);
+		const struct direction next = evaluate(&surface, x);
 		if (at.lobe >= fmax(before.lobe, next.lobe)) {
 			const struct direction top = refine(&surface, at);
 			best = top.lobe > best.lobe ? top : best;

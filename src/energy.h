@@ -25,7 +25,7 @@ MUST_CHECK enum status energy_albedo(const struct cook_torrance *model, double c
  * Given:   as energy_lobe(); ks >= 0
  * Returns: STATUS_OK; albedo[], absolute error 1e-5 for kd, ks up to 1; *theta_i, radians in [0, pi/2], where that is:
  *          one direction for all channels, as their lobes are alike. STATUS_UNSUPPORTED as above.
- * Note:    looks at about thirty directions and refines around the largest: 5 to 20 ms for STD, GGX and Beckmann; sharp
+ * Note:    evaluates about thirty directions and refines around the largest: 5 to 20 ms for STD, GGX and Beckmann; sharp
  *          lobes of gtr and low ten times as much. */
 MUST_CHECK enum status energy_albedo_max(const struct cook_torrance *model, double albedo[3], double *theta_i);
 

@@ -51,6 +51,11 @@ bool ndf_has_anisotropy(const struct ndf_class *class)
 	return !class->isotropic;
 }
 
+bool ndf_is_student_t(const struct ndf_class *class)
+{
+	return class->student_t;
+}
+
 const struct ndf_param *ndf_param_at(const struct ndf_class *class, int index)
 {
 	return index >= 0 && index < class->n_params ? &class->param[index] : NULL;
@@ -124,6 +129,15 @@ enum status ndf_set_lambda_form(struct ndf *ndf, enum lambda_form form)
 	ndf->lambda_form = form;
 	ndf->lambda_K = form == LAMBDA_EXACT ? 0.0 : student_t_K(ndf->gamma);
 	return STATUS_OK;
+}
+
+bool ndf_plain(const struct ndf *ndf, struct ndf *plain)
+{
+	const bool ggx = ndf->gamma == 2.0 && ndf->class->ggx_at_2;
+	if ((!ggx && !isinf(ndf->gamma)) || ndf->lambda_form == LAMBDA_RATIONAL)
+		return false;
+	const double sigma = ndf->sigma_x / ndf->stretch;
+	return ndf_init(plain, ggx ? &ndf_class_ggx : &ndf_class_beckmann, sigma, sigma, NAN) == STATUS_OK;
 }
 
 double ndf_D(const struct ndf *ndf, struct vec3 m)

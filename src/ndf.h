@@ -39,13 +39,17 @@ struct ndf_class; /* one row of the table of distributions; see ndf_class.h */
 
 enum { NDF_PARAMS_MAX = 3 };
 
+/* What a parameter is to a class: the roughness and the shape of ndf_init(), or one of its own. */
+enum ndf_role { NDF_ROLE_OTHER, NDF_ROLE_SIGMA, NDF_ROLE_GAMMA };
+
 /* struct ndf_param - one named parameter of a class. The search coordinate that keeps valleys straight is
  * ln(value - min) for all of them. */
 struct ndf_param {
 	const char *name;              /* "sigma", "gamma", "x", "B", "C" */
+	enum ndf_role role;            /* of "sigma" and "gamma"; B, C and x have none */
 	double min, max;               /* domain, max included */
 	bool min_included;             /* whether min itself is allowed; no -> an open end */
-	double search_min, search_max; /* where a fit should look; equal when it should leave the value as it is */
+	double search_min, search_max; /* where a fit should search; equal when it should leave the value as it is */
 };
 
 /* struct ndf - one distribution with its parameters; filled by ndf_init() or ndf_init_params(), then only read. */
@@ -84,6 +88,9 @@ bool ndf_is_tabulated(const struct ndf_class *ndf_class);
 bool ndf_has_lambda_forms(const struct ndf_class *ndf_class);
 /* ndf_has_anisotropy - whether sigma_x and sigma_y may differ. */
 bool ndf_has_anisotropy(const struct ndf_class *ndf_class);
+/* ndf_is_student_t - whether the slopes are Student-t (std, hyper-cauchy, t-family): the other forms of Lambda exist, and
+ * gamma begins at 1.5. */
+bool ndf_is_student_t(const struct ndf_class *ndf_class);
 /* ndf_param_at - the named parameters of a class, index 0, 1, ...; NULL past the last. */
 const struct ndf_param *ndf_param_at(const struct ndf_class *ndf_class, int index);
 
@@ -106,10 +113,13 @@ MUST_CHECK enum status ndf_init_params(struct ndf *ndf, const struct ndf_class *
 void ndf_from_pwl(struct ndf *ndf, const struct pwl *pwl);
 
 /* ndf_set_lambda_form - the form of Lambda that ndf_lambda() and ndf_G1() use from now on; exact after ndf_init().
- * Returns: STATUS_OK; STATUS_UNSUPPORTED for a class with nothing but its exact form (all but std, hyper-cauchy,
- *          t-family); STATUS_DOMAIN where gamma is none that the form can do (lambda_form.h). *ndf is untouched then.
+ * Returns: STATUS_OK; STATUS_UNSUPPORTED for a class with nothing but its exact form (not ndf_is_student_t()); STATUS_DOMAIN where gamma is none that the form can do (lambda_form.h). *ndf is untouched then.
  */
 MUST_CHECK enum status ndf_set_lambda_form(struct ndf *ndf, enum lambda_form form);
+
+/* ndf_plain - GGX or Beckmann, into *plain, where an isotropic distribution is one of them under another name: the same D
+ * and Lambda to rounding. Returns: false, *plain untouched, where it is neither, or has the rational form of Lambda. */
+bool ndf_plain(const struct ndf *ndf, struct ndf *plain);
 
 /* ndf_D - density of microfacet normals, 1/sr.
  *     beckmann   exp(-q) / (pi sigma_x sigma_y cos^4)                        q = tan^2 (cos^2 phi/sigma_x^2 +

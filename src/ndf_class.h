@@ -15,6 +15,8 @@ struct ndf_class {
 	bool isotropic; /* sigma_x = sigma_y only */
 	/* Slopes p, q with the density P22 = (gamma-1)/(pi a sigma_x sigma_y) (1 + q/a)^-gamma: see student_t.h. */
 	bool student_t;
+	/* GGX of the same sigma/stretch at gamma = 2. Each class that takes gamma = INFINITY is Beckmann there. */
+	bool ggx_at_2;
 	/* Where param[] is not sigma, gamma: from sigma and gamma to param[], and back. */
 	void (*to_params)(struct ndf *ndf);
 	void (*from_params)(struct ndf *ndf);
@@ -33,8 +35,8 @@ struct ndf_class {
 /* Parameters that many classes have. */
 #define NDF_PARAM_SIGMA                                                                                                \
 	{                                                                                                              \
-		.name = "sigma", .min = NDF_SIGMA_MIN, .max = NDF_SIGMA_MAX, .min_included = true, .search_min = 1e-4, \
-		.search_max = 4.0                                                                                      \
+		.name = "sigma", .role = NDF_ROLE_SIGMA, .min = NDF_SIGMA_MIN, .max = NDF_SIGMA_MAX,                   \
+		.min_included = true, .search_min = 1e-4, .search_max = 4.0                                            \
 	}
 
 extern const struct ndf_class ndf_class_beckmann;

@@ -9,6 +9,7 @@ const struct ndf_class ndf_class_ggx = {
 	.n_params = 1,
 	.param = {NDF_PARAM_SIGMA},
 	.gamma = 2.0,
+	.ggx_at_2 = true,
 	.D = ggx_D,
 	.lambda = ggx_lambda,
 	.P2 = ggx_P2,

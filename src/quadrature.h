@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* quadrature - adaptive integration of a function over an interval, deterministic, without allocation. */
+/* quadrature - adaptive integration of a function over an interval, deterministic.
+ * By hand: integrals are nested three deep, and GSL would allocate for each of the inner ones; qag takes 1.4 times as
+ * long with its workspace, cquad 5 times. */
 #ifndef QUADRATURE_H
 #define QUADRATURE_H
 

@@ -32,12 +32,12 @@ static double six_points(const double y[6], double t)
 
 double smith_table_G1(struct smith_table *table, struct vec3 w)
 {
-	const double place = (log2(w.z) - log2(hypot(w.x, w.y)) - table->low) * SMITH_TABLE_PER_OCTAVE;
-	if (!(place >= 2.0 && place < LAST - 3.0) || table->ndf->lambda_form != LAMBDA_EXACT)
+	const double position = (log2(w.z) - log2(hypot(w.x, w.y)) - table->low) * SMITH_TABLE_PER_OCTAVE;
+	if (!(position >= 2.0 && position < LAST - 3.0) || table->ndf->lambda_form != LAMBDA_EXACT)
 		return ndf_G1(table->ndf, w);
-	const int i = (int)place;
+	const int i = (int)position;
 	double y[6];
 	for (int k = 0; k < 6; k++)
 		y[k] = node_at(table, i - 2 + k);
-	return six_points(y, place - i);
+	return six_points(y, position - i);
 }

@@ -14,7 +14,7 @@ enum status {
 	STATUS_INTERRUPTED, /* stopped by the caller */
 };
 
-/* Marks a function whose status must be looked at. */
+/* Marks a function whose status must be read. */
 #define MUST_CHECK __attribute__((warn_unused_result))
 
 /* struct error - the words for a failure. Filled only when something fails; one line, no newline,

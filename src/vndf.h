@@ -56,7 +56,7 @@ struct vndf_slopes vndf_beckmann_slopes(double cos_i, double sin_i, double u1, d
  * Returns: >= 0; 0 where wo is at or below the horizon or the facet faces away. */
 double vndf_weight(const struct ndf *ndf, enum gaf gaf, struct vec3 wi, struct vec3 m, double pdf);
 
-/* struct vndf_pseudo - the STD supplement's stand-in for visible normals [Algorithm 1]: those of GGX or Beckmann of the
+/* struct vndf_pseudo - the STD supplement's substitute for visible normals [Algorithm 1]: those of GGX or Beckmann of the
  * same roughness where gamma is near enough, else all normals, with density D(m) m.z.
  * For anisotropic roughness its sigma is sqrt(sigma_x sigma_y). At the thresholds themselves the text decides: they
  * belong to GGX and Beckmann. Where GGX stands for gamma < 1.75, and Beckmann for any finite gamma, the weights are

@@ -12,7 +12,7 @@ double vndf_weight(const struct ndf *ndf, enum gaf gaf, struct vec3 wi, struct v
 }
 
 /* The class whose visible normals stand in, by name; NULL = none does. */
-static const char *stand_in(double sigma, double gamma)
+static const char *substitute(double sigma, double gamma)
 {
 	if (sigma <= 0.01)
 		return NULL;
@@ -30,7 +30,7 @@ enum status vndf_pseudo_init(struct vndf_pseudo *pseudo, const struct ndf *ndf)
 	if (!vndf_supports(ndf))
 		return STATUS_DOMAIN;
 	const double sigma_x = ndf->sigma_x / ndf->stretch, sigma_y = ndf->sigma_y / ndf->stretch; /* of std */
-	const char *name = stand_in(sqrt(sigma_x * sigma_y), ndf->gamma);
+	const char *name = substitute(sqrt(sigma_x * sigma_y), ndf->gamma);
 	*pseudo = (struct vndf_pseudo){*ndf, name != NULL};
 	return name ? ndf_init(&pseudo->proposal, ndf_find(name), sigma_x, sigma_y, NAN) : STATUS_OK;
 }

@@ -383,7 +383,7 @@ static void sweep_visible(const struct subject *s)
 {
 	struct row *pdf_row = row_of("visible pdf", s->name), *sample_row = row_of("visible sample", s->name);
 	struct vndf_pseudo pseudo;
-	const bool stand_in = vndf_supports(&s->ndf) && vndf_pseudo_init(&pseudo, &s->ndf) == STATUS_OK;
+	const bool substitute = vndf_supports(&s->ndf) && vndf_pseudo_init(&pseudo, &s->ndf) == STATUS_OK;
 	for (int i = 0; i < EXTREME_DIRECTIONS; i += s->quadrature ? 4 : 2) {
 		for (int j = 0; j < EXTREME_DIRECTIONS; j += 2) {
 			const struct vec3 wi = s->w[i], m = turned(s->w[j], 0.7);
@@ -419,10 +419,10 @@ static void sweep_visible(const struct subject *s)
 			      (struct expected){1.0 - 4.0 * eps, 1.0 + 4.0 * eps, false, NAN, 1.0});
 			check(sample_row, vec3_dot(wi, m), 0,
 			      (struct expected){-eps, 1.0 + 4.0 * eps, false, NAN, 1.0});
-			if (!stand_in)
+			if (!substitute)
 				continue;
 			OBSERVE(m, flags, vndf_pseudo_sample(&pseudo, wi, u1, u2));
-			check(row_of("stand-in sample", s->name), m.z, flags,
+			check(row_of("substitute sample", s->name), m.z, flags,
 			      (struct expected){0.0, 1.0, false, NAN, 1.0});
 		}
 	}

@@ -50,7 +50,8 @@ static void lab_of_known_colours(void **state)
 	const double join = pow(6.0 / 29.0, 3);
 	colour_lab((const double[]){join * (1 - 1e-9), join, join}, below);
 	colour_lab((const double[]){join * (1 + 1e-9), join, join}, above);
-	check_abs(delta_e_76(below, above), 0, 1e-6, "join");
+	for (int c = 0; c < 3; c++)
+		check_abs(below[c], above[c], 1e-6, "join");
 }
 
 static void ciede2000_of_the_published_pairs(void **state)
@@ -64,7 +65,6 @@ static void ciede2000_of_the_published_pairs(void **state)
 		assert_true(delta_e_2000(p, p) == 0);
 	}
 	assert_int_equal(golden.rows, 34);
-	check_abs(delta_e_76((const double[]){50, 1, 2}, (const double[]){52, -2, 8}), 7, 1e-14, "CIE 1976");
 }
 
 static void false_colours_rise_in_lightness(void **state)

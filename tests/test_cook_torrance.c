@@ -63,7 +63,7 @@ static void check_product(const struct cook_torrance *model, struct vec3 wi, str
 	}
 }
 
-static void product_of_parts(void **state)
+static void lobe_is_the_product_of_its_parts(void **state)
 {
 	(void)state;
 	for_all(check_product);
@@ -76,14 +76,14 @@ static void check_reciprocity(const struct cook_torrance *model, struct vec3 wi,
 	check_between(lobe, 0.0, 1e300, "lobe is finite");
 }
 
-static void reciprocity(void **state)
+static void lobe_is_reciprocal(void **state)
 {
 	(void)state;
 	for_all(check_reciprocity);
 }
 
 /* By hand: a GGX mirror configuration at 60 degrees, h the normal. Lambda = (sqrt(1 + 3 sigma^2) - 1)/2. */
-static void by_hand(void **state)
+static void lobe_matches_values_by_hand(void **state)
 {
 	(void)state;
 	struct cook_torrance model = model_make("ggx", 0.5, 0.0);
@@ -104,7 +104,7 @@ static void by_hand(void **state)
 }
 
 /* Below the horizon nothing is reflected, Lambert's part included. */
-static void horizon(void **state)
+static void lobe_is_zero_below_the_horizon(void **state)
 {
 	(void)state;
 	const struct cook_torrance model = model_make("std", 0.3, 1.7);
@@ -134,7 +134,7 @@ static void horizon(void **state)
 }
 
 /* Torrance-Sparrow's three cases, in the plane of incidence. */
-static void v_groove(void **state)
+static void v_groove_is_the_minimum_of_its_three_terms(void **state)
 {
 	(void)state;
 	const struct cook_torrance model = model_make("ggx", 0.5, 0.0);
@@ -149,7 +149,7 @@ static void v_groove(void **state)
 	}
 }
 
-static void names(void **state)
+static void names_and_values_are_inverse(void **state)
 {
 	(void)state;
 	const char *const want[GAF_COUNT] = {"uncorrelated", "correlated", "v-groove"};
@@ -168,7 +168,7 @@ static void names(void **state)
 }
 
 /* The texts of failures: truncated to fit, ignored when nobody wants them, status handed through. */
-static void errors(void **state)
+static void error_texts_are_truncated_and_distinct(void **state)
 {
 	(void)state;
 	struct error error;
@@ -184,12 +184,40 @@ static void errors(void **state)
 	}
 }
 
+static void lobe_from_tabulated_factors_is_the_lobe(void **state)
+{
+	(void)state;
+	for (enum gaf gaf = 0; gaf < GAF_COUNT; gaf++)
+		for (int n = 0; n < 60; n++) {
+			struct cook_torrance model = {.gaf = gaf, .fresnel = FRESNEL_DIELECTRIC, .n = 1.5};
+			assert_int_equal(ndf_init(&model.ndf, ndf_find("std"), 0.3, 0.3, 1.8), STATUS_OK);
+			const struct vec3 wi = vec3_from_spherical_deg(1.5 * n, 10.0);
+			const struct vec3 wo = vec3_from_spherical_deg(89.5 - n, 3.0 * n);
+			const struct vec3 sum = vec3_add(wi, wo);
+			const double F = fresnel_F(model.fresnel, 0.5 * vec3_length(sum), model.n, 0.0);
+			const double DF = F * ndf_D(&model.ndf, vec3_unit(sum)), cosines = wi.z * wo.z;
+			const double want = cook_torrance_lobe(&model, wi, wo);
+			check_rel(cook_torrance_from_G(DF, gaf_G(gaf, &model.ndf, wi, wo), cosines), want, 1e-13, "G");
+			if (gaf == GAF_V_GROOVE)
+				continue;
+			check_rel(
+				cook_torrance_from_G1(gaf, DF, ndf_G1(&model.ndf, wi), ndf_G1(&model.ndf, wo), cosines),
+				want, 1e-13, "G1");
+		}
+	assert_true(cook_torrance_from_G1(GAF_CORRELATED, 1.0, 0.0, 0.5, 0.25) == 0.0);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(product_of_parts), cmocka_unit_test(reciprocity), cmocka_unit_test(by_hand),
-		cmocka_unit_test(horizon),          cmocka_unit_test(v_groove),    cmocka_unit_test(names),
-		cmocka_unit_test(errors),
+		cmocka_unit_test(lobe_is_the_product_of_its_parts),
+		cmocka_unit_test(lobe_is_reciprocal),
+		cmocka_unit_test(lobe_matches_values_by_hand),
+		cmocka_unit_test(lobe_is_zero_below_the_horizon),
+		cmocka_unit_test(v_groove_is_the_minimum_of_its_three_terms),
+		cmocka_unit_test(names_and_values_are_inverse),
+		cmocka_unit_test(error_texts_are_truncated_and_distinct),
+		cmocka_unit_test(lobe_from_tabulated_factors_is_the_lobe),
 	};
 	return cmocka_run_group_tests_name("cook_torrance", tests, NULL, NULL);
 }

@@ -82,7 +82,7 @@ static void unrotated_is_anisotropic_ggx(void **state)
 }
 
 /* theta_z turns the distribution about the normal; scale, an orthogonal factor and the sign of A do not matter. */
-static void invariance(void **state)
+static void scale_and_rotation_of_A_change_nothing(void **state)
 {
 	(void)state;
 	const struct ellipsoid plain = from_angles(0.2, 0.7, 0.0, 0.0, 0.0),
@@ -183,7 +183,7 @@ static double D_seen(const struct ellipsoid *e, struct vec3 wi, struct vec3 m)
 }
 
 /* Smooth but for the kink at wi.m = 0, hence the tolerances. */
-static void integrals(void **state)
+static void D_and_visible_normals_integrate_to_their_areas(void **state)
 {
 	(void)state;
 	for (int i = 0; i < SHAPES; i++) {
@@ -262,7 +262,7 @@ static void weights_give_the_albedo(void **state)
 	}
 }
 
-static void extremes(void **state)
+static void extreme_axes_stay_finite(void **state)
 {
 	(void)state;
 	const double alphas[] = {1e-50, 1e-5, 0.4, 30.0, 1e50};
@@ -288,7 +288,7 @@ static void extremes(void **state)
 	}
 }
 
-static void edges(void **state)
+static void edges_give_their_limits(void **state)
 {
 	(void)state;
 	const struct ellipsoid e = from_angles(0.4, 0.2, 30.0, 0.0, 0.0);
@@ -301,7 +301,7 @@ static void edges(void **state)
 	assert_true(isnan(ellipsoid_sample(&e, nan, 0.3, 0.4).x));
 }
 
-static void refuses(void **state)
+static void arguments_outside_the_domain_are_refused(void **state)
 {
 	(void)state;
 	struct ellipsoid e;
@@ -333,14 +333,14 @@ int main(void)
 		cmocka_unit_test(golden_values),
 		cmocka_unit_test(golden_samples),
 		cmocka_unit_test(unrotated_is_anisotropic_ggx),
-		cmocka_unit_test(invariance),
+		cmocka_unit_test(scale_and_rotation_of_A_change_nothing),
 		cmocka_unit_test(tilted_needle),
-		cmocka_unit_test(integrals),
+		cmocka_unit_test(D_and_visible_normals_integrate_to_their_areas),
 		cmocka_unit_test(samples_follow_pdf),
 		cmocka_unit_test(weights_give_the_albedo),
-		cmocka_unit_test(extremes),
-		cmocka_unit_test(edges),
-		cmocka_unit_test(refuses),
+		cmocka_unit_test(extreme_axes_stay_finite),
+		cmocka_unit_test(edges_give_their_limits),
+		cmocka_unit_test(arguments_outside_the_domain_are_refused),
 	};
 	return cmocka_run_group_tests_name("ellipsoid", tests, NULL, NULL);
 }

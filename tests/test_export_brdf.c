@@ -28,7 +28,7 @@ static char *export_text(const struct cook_torrance *model)
 	assert_non_null(file);
 	if (export_prepare(&export, EXPORT_BRDF, &source, &error) || export_write(&export, file, &error))
 		fail_msg("%s", error.text);
-	assert_false(export.stand_in);
+	assert_false(export.substitute);
 	assert_int_equal(fclose(file), 0);
 	return text;
 }

@@ -23,7 +23,7 @@ static void golden_conductor(void **state)
 	}
 }
 
-static void edges(void **state)
+static void edges_give_their_limits(void **state)
 {
 	(void)state;
 	for (int i = 0; i <= 1000; i++) {
@@ -67,7 +67,7 @@ static void weak_interface(void **state)
 }
 
 /* At Brewster's angle, tan = n, only s-polarised light is reflected: F = r_s^2/2, r_s = (1 - n^2)/(1 + n^2). */
-static void brewster(void **state)
+static void F_at_the_Brewster_angle_is_half_of_r_s_squared(void **state)
 {
 	(void)state;
 	for (double n = 1.1; n < 5.0; n += 0.37) {
@@ -90,7 +90,7 @@ static void stays_in_range(void **state)
 	}
 }
 
-static void dispatch(void **state)
+static void F_is_the_form_it_is_asked_for(void **state)
 {
 	(void)state;
 	assert_true(fresnel_F(FRESNEL_DIELECTRIC, 0.37, 1.7, 2.9) == fresnel_dielectric(0.37, 1.7));
@@ -99,7 +99,7 @@ static void dispatch(void **state)
 	check_rel(fresnel_schlick(0.5, 3.0), 0.25 + 0.75 / 32.0, 1e-15, "Schlick by hand");
 }
 
-static void names(void **state)
+static void names_and_values_are_inverse(void **state)
 {
 	(void)state;
 	const char *const want[FRESNEL_COUNT] = {"dielectric", "schlick", "conductor", "none"};
@@ -122,12 +122,12 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(golden_dielectric),
 		cmocka_unit_test(golden_conductor),
-		cmocka_unit_test(edges),
+		cmocka_unit_test(edges_give_their_limits),
 		cmocka_unit_test(weak_interface),
-		cmocka_unit_test(brewster),
+		cmocka_unit_test(F_at_the_Brewster_angle_is_half_of_r_s_squared),
 		cmocka_unit_test(stays_in_range),
-		cmocka_unit_test(dispatch),
-		cmocka_unit_test(names),
+		cmocka_unit_test(F_is_the_form_it_is_asked_for),
+		cmocka_unit_test(names_and_values_are_inverse),
 	};
 	return cmocka_run_group_tests_name("fresnel", tests, NULL, NULL);
 }

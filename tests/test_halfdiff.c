@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
+#include "data_readers/measurement.h"
 #include "src/halfdiff.h"
 
 static struct vec3 turned_about_z(struct vec3 v, double angle)
@@ -8,7 +9,7 @@ static struct vec3 turned_about_z(struct vec3 v, double angle)
 	return (struct vec3){c * v.x - s * v.y, s * v.x + c * v.y, v.z};
 }
 
-static void round_trip(void **state)
+static void angles_and_directions_are_inverse(void **state)
 {
 	(void)state;
 	for (double theta_h = 0.013; theta_h < M_PI_2; theta_h += 0.07) {
@@ -38,7 +39,7 @@ static void round_trip(void **state)
 }
 
 /* The light and the view change places: phi_d turns by pi, the rest stays. */
-static void swap(void **state)
+static void swapping_directions_turns_phi_d_by_pi(void **state)
 {
 	(void)state;
 	struct vec3 wi, wo;
@@ -49,7 +50,7 @@ static void swap(void **state)
 	check_abs(swapped.phi_d, 1.1 + M_PI, 1e-15, "phi_d");
 }
 
-static void edges(void **state)
+static void edges_give_their_limits(void **state)
 {
 	(void)state;
 	struct vec3 wi, wo;
@@ -84,7 +85,7 @@ static void edges(void **state)
 }
 
 /* Sine and cosine of exactly as many degrees as the double holds, to 20 digits. */
-static void degrees(void **state)
+static void sincos_of_degrees_is_exact_to_the_last_bits(void **state)
 {
 	(void)state;
 	static const struct {
@@ -136,7 +137,7 @@ static void degrees(void **state)
 	assert_true(isnan(s) && isnan(c));
 }
 
-static void spherical(void **state)
+static void spherical_directions_have_unit_length(void **state)
 {
 	(void)state;
 	const struct vec3 up = vec3_from_spherical_deg(0.0, 77.0);
@@ -166,11 +167,30 @@ static void spherical(void **state)
 	assert_true(isnan(vec3_from_spherical_deg(30.0, INFINITY).x));
 }
 
+static void indices_and_angles_of_entries_are_inverse(void **state)
+{
+	(void)state;
+	for (enum bins bins = 0; bins < BINS_COUNT; bins++)
+		for (int i = 0; i < 90; i++) {
+			const struct bins_indices at = bins_indices(bins, bins_angles(bins, i, 89 - i, 3 * i));
+			check_abs(at.i, i, 1e-12, "i");
+			check_abs(at.j, 89 - i, 1e-12, "j");
+			check_abs(at.k, 3 * i, 1e-12, "k");
+			const double phi = bins_angles(bins, 0, 0, i).phi_d;
+			const double mirrored = bins_angles(bins, 0, 0, bins_mirror(bins, i)).phi_d;
+			check_abs(phi + mirrored, M_PI, 1e-14, "mirror");
+		}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(round_trip), cmocka_unit_test(swap),      cmocka_unit_test(edges),
-		cmocka_unit_test(degrees),    cmocka_unit_test(spherical),
+		cmocka_unit_test(angles_and_directions_are_inverse),
+		cmocka_unit_test(swapping_directions_turns_phi_d_by_pi),
+		cmocka_unit_test(edges_give_their_limits),
+		cmocka_unit_test(sincos_of_degrees_is_exact_to_the_last_bits),
+		cmocka_unit_test(spherical_directions_have_unit_length),
+		cmocka_unit_test(indices_and_angles_of_entries_are_inverse),
 	};
 	return cmocka_run_group_tests_name("halfdiff", tests, NULL, NULL);
 }

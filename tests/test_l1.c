@@ -94,7 +94,7 @@ static void run(const struct problem *p, struct l1 *l1, bool curvature)
 
 		estimate(p, l1->x, curvature ? l1->tau : 0, h);
 		l1_update(l1, error, slope, h);
-		assert_true(l1->looks <= L1_CUTS);
+		assert_true(l1->evaluations <= L1_CUTS);
 	}
 }
 
@@ -128,12 +128,12 @@ static void reaches_the_exact_minimum(void **state)
 		const double best = minimum(&p), scale = value(&p, 0, 0, slope);
 
 		solve(&p, start, 1e-7, &l1);
-		/* The solver looks at single-precision points only, which costs up to their rounding. */
+		/* The solver evaluations at single-precision points only, which costs up to their rounding. */
 		check_abs(l1.error, best, 3e-7 * scale + 1e-9, "minimum");
 		assert_true(l1_lower_bound(&l1) <= best * (1 + 1e-12) + 1e-12);
 		check_abs(value(&p, l1.best[0], l1.best[1], slope), l1.error, 0, "best is where error was seen");
 
-		/* Second derivatives that mislead, known or estimated, cost looks only. */
+		/* Second derivatives that mislead, known or estimated, cost evaluations only. */
 		const double size = scale * pow(10, 8 * uniform(&seed) - 4), tilt = 2 * uniform(&seed) - 1;
 		const double wrong[3] = {size, tilt * size, size};
 		l1_start(&l1, p.lo, p.hi, start, wrong, scale, 1e-7, true);
@@ -159,7 +159,7 @@ static void make_metal(struct problem *p, unsigned seed, double exponent)
 	}
 }
 
-/* What one solve has learnt spares the next one looks, and both end within their tolerance of the minimum. */
+/* What one solve has learnt spares the next one evaluations, and both end within their tolerance of the minimum. */
 static void neighbours_teach(void **state)
 {
 	static struct problem p, next;
@@ -178,18 +178,18 @@ static void neighbours_teach(void **state)
 		run(&p, &first, true);
 		l1_start(&again, next.lo, next.hi, first.best, NULL, scale, 1e-7, false);
 		run(&next, &again, true);
-		alone += again.looks;
+		alone += again.evaluations;
 		l1_start(&again, next.lo, next.hi, first.best, first.h, scale, 1e-7, false);
 		assert_true(again.tau == 0);
 		run(&next, &again, false);
-		taught += again.looks;
+		taught += again.evaluations;
 		l1_start(&certain, next.lo, next.hi, again.best, again.h, scale, 1e-8, true);
 		run(&next, &certain, false);
 		assert_true(certain.gap <= 1e-8 * scale);
 		check_abs(again.error, certain.error, 1e-6 * scale, "error of the taught solve");
 		assert_true(again.error >= l1_lower_bound(&certain) - 1e-12 * scale);
 	}
-	print_message("looks: %d alone, %d taught\n", alone, taught);
+	print_message("evaluations: %d alone, %d taught\n", alone, taught);
 	assert_true(taught < alone);
 }
 

@@ -72,7 +72,7 @@ static void check_golden_smith(const struct golden *golden, const struct ndf *nd
 	check_rel(ndf_G1(ndf, w), G1, 2e-15, golden->label);
 }
 
-static void golden_std_D(void **state)
+static void std_D_matches_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden = golden_open("tests/golden/std_D.csv", "gamma,sigma,theta_deg,D");
@@ -83,7 +83,7 @@ static void golden_std_D(void **state)
 	}
 }
 
-static void golden_std_lambda(void **state)
+static void std_Lambda_matches_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden = golden_open("tests/golden/std_lambda.csv", "gamma,sigma,theta_deg,mu,Lambda,G1");
@@ -106,19 +106,19 @@ static void golden_closed(const char *path, const char *name)
 	}
 }
 
-static void golden_beckmann(void **state)
+static void beckmann_matches_golden_rows(void **state)
 {
 	(void)state;
 	golden_closed("tests/golden/beckmann_lambda.csv", "beckmann");
 }
 
-static void golden_ggx(void **state)
+static void ggx_matches_golden_rows(void **state)
 {
 	(void)state;
 	golden_closed("tests/golden/ggx_lambda.csv", "ggx");
 }
 
-static void golden_anisotropic(void **state)
+static void anisotropic_std_matches_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden =
@@ -132,7 +132,7 @@ static void golden_anisotropic(void **state)
 	}
 }
 
-static void golden_anisotropic_classes(void **state)
+static void anisotropic_classes_match_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden =
@@ -147,7 +147,7 @@ static void golden_anisotropic_classes(void **state)
 }
 
 /* D of vectors taken as exact, far into the tails: there is no rounding of an angle in these. */
-static void golden_vectors(void **state)
+static void values_match_golden_vectors(void **state)
 {
 	(void)state;
 	static const struct {
@@ -216,7 +216,7 @@ static void check_normalised(const struct ndf *ndf)
 	gsl_integration_workspace_free(workspace);
 }
 
-static void normalised(void **state)
+static void D_is_normalised(void **state)
 {
 	(void)state;
 	for_all(check_normalised);
@@ -247,7 +247,7 @@ static double slope_beyond(double p, void *params)
 	return (p - d->mu) / d->mu * density;
 }
 
-static void smith_by_definition(void **state)
+static void Lambda_is_the_integral_that_defines_it(void **state)
 {
 	(void)state;
 	static const struct {
@@ -323,7 +323,7 @@ static void check_symmetry(const struct ndf *ndf)
 	}
 }
 
-static void symmetry(void **state)
+static void D_and_Lambda_are_symmetric(void **state)
 {
 	(void)state;
 	for_all(check_symmetry);
@@ -350,7 +350,7 @@ static void ggx_is_std_2(void **state)
 }
 
 /* The general code meets the special cases: next to gamma = 2, and for gamma -> infinity as 1/gamma. */
-static void limits(void **state)
+static void limits_are_reached(void **state)
 {
 	(void)state;
 	const struct ndf ggx = ndf_make("ggx", 0.4, 0.4, NAN), beckmann = ndf_make("beckmann", 0.4, 0.4, NAN);
@@ -626,22 +626,80 @@ static void params(void **state)
 	check_rel(ndf_make("t-family", 0.5, 0.5, 4.0).param[2], 2.0, 0.0, "x of t-family");
 }
 
+static int n_plain;
+
+static void check_plain(const struct ndf *ndf)
+{
+	struct ndf plain = {.gamma = 0.0};
+	if (ndf->sigma_x != ndf->sigma_y)
+		return;
+	if (!ndf_plain(ndf, &plain)) {
+		assert_true(plain.gamma == 0);
+		assert_true(!isinf(ndf->gamma));
+		return;
+	}
+	n_plain++;
+	assert_true(plain.class == ndf_find("ggx") || plain.class == ndf_find("beckmann"));
+	for (double theta = 1.0; theta < 90.0; theta += 11.0) {
+		const struct vec3 w = vec3_from_spherical_deg(theta, 17.0);
+		if (ndf_D(ndf, w) > 1e-200)
+			check_rel(ndf_D(&plain, w), ndf_D(ndf, w), 3e-13, "D of plain");
+		check_rel(ndf_G1(&plain, w), ndf_G1(ndf, w), 1e-11, "G1 of plain");
+	}
+}
+
+static void plain_is_the_same_distribution_by_another_name(void **state)
+{
+	(void)state;
+	for_all(check_plain);
+	/* std twice, ggx, beckmann, hyper-cauchy, t-family, gtr; six roughnesses each. */
+	assert_true(n_plain == 7 * 6);
+	struct ndf low = ndf_make("low", 0.3, 0.3, 2.0), rational = ndf_make("std", 0.3, 0.3, 2.0), plain;
+	assert_false(ndf_plain(&low, &plain));
+	assert_true(ndf_plain(&rational, &plain));
+	assert_int_equal(ndf_set_lambda_form(&rational, LAMBDA_RATIONAL), STATUS_OK);
+	assert_false(ndf_plain(&rational, &plain));
+}
+
+static void classes_that_are_Student_t_take_the_other_forms(void **state)
+{
+	(void)state;
+	for (int i = 0; ndf_at(i); i++) {
+		const struct ndf_class *class = ndf_at(i);
+		struct ndf ndf;
+		if (ndf_is_tabulated(class)) {
+			assert_false(ndf_is_student_t(class));
+			continue;
+		}
+		assert_int_equal(ndf_init(&ndf, class, 0.3, 0.3, 3.0), STATUS_OK);
+		assert_int_equal(ndf_set_lambda_form(&ndf, LAMBDA_RATIONAL),
+				 ndf_is_student_t(class) ? STATUS_OK : STATUS_UNSUPPORTED);
+		const struct ndf_param *second = ndf_param_at(class, 1);
+		assert_true((second && second->min == 1.5) == ndf_is_student_t(class));
+		for (int p = 0; ndf_param_at(class, p); p++) {
+			const struct ndf_param *param = ndf_param_at(class, p);
+			assert_true((param->role == NDF_ROLE_SIGMA) == !strcmp(param->name, "sigma"));
+			assert_true((param->role == NDF_ROLE_GAMMA) == !strcmp(param->name, "gamma"));
+		}
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(golden_std_D),
-		cmocka_unit_test(golden_std_lambda),
-		cmocka_unit_test(golden_beckmann),
-		cmocka_unit_test(golden_ggx),
-		cmocka_unit_test(golden_anisotropic),
-		cmocka_unit_test(golden_anisotropic_classes),
-		cmocka_unit_test(golden_vectors),
-		cmocka_unit_test(normalised),
-		cmocka_unit_test(smith_by_definition),
+		cmocka_unit_test(std_D_matches_golden_rows),
+		cmocka_unit_test(std_Lambda_matches_golden_rows),
+		cmocka_unit_test(beckmann_matches_golden_rows),
+		cmocka_unit_test(ggx_matches_golden_rows),
+		cmocka_unit_test(anisotropic_std_matches_golden_rows),
+		cmocka_unit_test(anisotropic_classes_match_golden_rows),
+		cmocka_unit_test(values_match_golden_vectors),
+		cmocka_unit_test(D_is_normalised),
+		cmocka_unit_test(Lambda_is_the_integral_that_defines_it),
 		cmocka_unit_test(masking),
-		cmocka_unit_test(symmetry),
+		cmocka_unit_test(D_and_Lambda_are_symmetric),
 		cmocka_unit_test(ggx_is_std_2),
-		cmocka_unit_test(limits),
+		cmocka_unit_test(limits_are_reached),
 		cmocka_unit_test(other_names),
 		cmocka_unit_test(quadrature),
 		cmocka_unit_test(seams),
@@ -649,6 +707,8 @@ int main(void)
 		cmocka_unit_test(domain),
 		cmocka_unit_test(table),
 		cmocka_unit_test(params),
+		cmocka_unit_test(plain_is_the_same_distribution_by_another_name),
+		cmocka_unit_test(classes_that_are_Student_t_take_the_other_forms),
 	};
 	gsl_set_error_handler_off();
 	return cmocka_run_group_tests_name("ndf", tests, NULL, NULL);

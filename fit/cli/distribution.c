@@ -141,11 +141,11 @@ static enum status from_params(const struct distribution_words *words, const str
 {
 	double value[NDF_PARAMS_MAX] = {NAN, NAN, NAN};
 	for (int i = 0; ndf_param_at(class, i); i++) {
-		const char *name = ndf_param_at(class, i)->name;
-		value[i] = !strcmp(name, "sigma") ? sigma : !strcmp(name, "gamma") ? gamma : NAN;
-		(void)result_param(words->params, name, &value[i]);
+		const struct ndf_param *param = ndf_param_at(class, i);
+		value[i] = param->role == NDF_ROLE_SIGMA ? sigma : param->role == NDF_ROLE_GAMMA ? gamma : NAN;
+		(void)result_param(words->params, param->name, &value[i]);
 		if (isnan(value[i]))
-			return error_set(error, STATUS_DOMAIN, "%s needs %s", ndf_name(class), name);
+			return error_set(error, STATUS_DOMAIN, "%s needs %s", ndf_name(class), param->name);
 	}
 	return ndf_init_params(ndf, class, value) ? refuse_params(class, value, error) : STATUS_OK;
 }
@@ -156,11 +156,9 @@ static enum status refuse_words(const struct ndf_class *class, double sigma_x, d
 {
 	const double sigma = sigma_x >= NDF_SIGMA_MIN && sigma_x <= NDF_SIGMA_MAX ? sigma_y : sigma_x;
 	double value[NDF_PARAMS_MAX] = {NAN, NAN, NAN};
-	for (int i = 0; ndf_param_at(class, i); i++) {
-		const char *name = ndf_param_at(class, i)->name;
-		const bool shape = !strcmp(name, "gamma") || !strcmp(name, "C");
-		value[i] = !strcmp(name, "sigma") ? sigma : shape ? gamma : NAN;
-	}
+	/* The second parameter has the domain of gamma, under whatever name. */
+	for (int i = 0; ndf_param_at(class, i); i++)
+		value[i] = ndf_param_at(class, i)->role == NDF_ROLE_SIGMA ? sigma : i == 1 ? gamma : NAN;
 	return refuse_params(class, value, error);
 }
 

@@ -29,8 +29,8 @@ static enum status add_noise(struct measurement *measurement, double noise, uint
 static enum status synthesise(const struct options *options, const struct cook_torrance *model, struct error *error)
 {
 	struct measurement measurement;
-	enum status status =
-		model_table(model, options->fit.criterion.bins, options->n_phi_d, 90, options->fit.threads, &measurement);
+	enum status status = model_table(model, options->fit.criterion.bins, options->n_phi_d, 90, options->fit.threads,
+					 &measurement);
 	if (status != STATUS_OK)
 		return error_set(error, status, "%s", status_str(status));
 	if (options->noise > 0)

@@ -21,26 +21,28 @@ static inline float g1_at(const struct kernel_g1 *g1, const float *restrict valu
 	return value[index] + fraction * (value[index + 1] - value[index]);
 }
 
-static void lobe_separable(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_samples *slots,
+/* The specular term as cook_torrance_from_G1() puts it together, in float and from tables;
+ * kernel_and_metrics_match_the_reference in tests/test_objective.c holds both against cook_torrance_f(). */
+static void lobe_separable(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_samples *samples,
 			   float *restrict s)
 {
 	const struct kernel_g1 table = *g1;
-	const float *restrict value = g1->value, *restrict geometric_factor = slots->geometric_factor;
-	const int32_t *restrict q_i = slots->q_i, *restrict q_o = slots->q_o;
-	const uint16_t *restrict at = slots->row;
+	const float *restrict value = g1->value, *restrict geometric_factor = samples->geometric_factor;
+	const int32_t *restrict q_i = samples->q_i, *restrict q_o = samples->q_o;
+	const uint16_t *restrict at = samples->row;
 
 #pragma omp simd
 	for (int n = 0; n < KERNEL_BLOCK; n++)
 		s[n] = geometric_factor[n] * row[at[n]] * g1_at(&table, value, q_i[n]) * g1_at(&table, value, q_o[n]);
 }
 
-static void lobe_correlated(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_samples *slots,
+static void lobe_correlated(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_samples *samples,
 			    float *restrict s)
 {
 	const struct kernel_g1 table = *g1;
-	const float *restrict value = g1->value, *restrict geometric_factor = slots->geometric_factor;
-	const int32_t *restrict q_i = slots->q_i, *restrict q_o = slots->q_o;
-	const uint16_t *restrict at = slots->row;
+	const float *restrict value = g1->value, *restrict geometric_factor = samples->geometric_factor;
+	const int32_t *restrict q_i = samples->q_i, *restrict q_o = samples->q_o;
+	const uint16_t *restrict at = samples->row;
 
 #pragma omp simd
 	for (int n = 0; n < KERNEL_BLOCK; n++) {
@@ -52,28 +54,28 @@ static void lobe_correlated(const struct kernel_g1 *g1, const float *restrict ro
 	}
 }
 
-static void lobe_static(const float *restrict row, const struct kernel_samples *slots, float *restrict s)
+static void lobe_static(const float *restrict row, const struct kernel_samples *samples, float *restrict s)
 {
-	const float *restrict geometric_factor = slots->geometric_factor;
-	const uint16_t *restrict at = slots->row;
+	const float *restrict geometric_factor = samples->geometric_factor;
+	const uint16_t *restrict at = samples->row;
 
 #pragma omp simd
 	for (int n = 0; n < KERNEL_BLOCK; n++)
 		s[n] = geometric_factor[n] * row[at[n]];
 }
 
-static void lobe(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *row, const struct kernel_samples *slots,
-		 float *s)
+static void lobe(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *row,
+		 const struct kernel_samples *samples, float *s)
 {
 	switch (gaf) {
 	case KERNEL_SEPARABLE:
-		lobe_separable(g1, row, slots, s);
+		lobe_separable(g1, row, samples, s);
 		break;
 	case KERNEL_CORRELATED:
-		lobe_correlated(g1, row, slots, s);
+		lobe_correlated(g1, row, samples, s);
 		break;
 	case KERNEL_STATIC:
-		lobe_static(row, slots, s);
+		lobe_static(row, samples, s);
 		break;
 	}
 }
@@ -85,7 +87,7 @@ typedef int32_t lanes_int __attribute__((vector_size(32), may_alias));
 typedef double lanes_double __attribute__((vector_size(64)));
 enum { LANES = 8 };
 
-struct lane_look {
+struct lane_evaluation {
 	lanes d, ks, tau, floor;
 };
 
@@ -101,13 +103,13 @@ __attribute__((always_inline)) static inline lanes rough_inverse(lanes x)
 	return y * (2 - x * y);
 }
 
-/* Adds the members m[0], m[KERNEL_BLOCK], ... of eight slots. Constant arguments are folded in. */
+/* Adds the members m[0], m[KERNEL_BLOCK], ... of eight samples. Constant arguments are folded in. */
 __attribute__((always_inline)) static inline void add_lanes(int members, bool curved, const float *m, const float *w_at,
-							    const float *s_at, const struct lane_look *look,
+							    const float *s_at, const struct lane_evaluation *at,
 							    struct accumulator *sum)
 {
-	const lanes w = *(const lanes *)w_at, s = *(const lanes *)s_at, f = look->d * w + look->ks * s;
-	const lanes wide = f + look->floor * w, window = look->tau * wide;
+	const lanes w = *(const lanes *)w_at, s = *(const lanes *)s_at, f = at->d * w + at->ks * s;
+	const lanes wide = f + at->floor * w, window = at->tau * wide;
 	/* Half of sum sign(r): half of the members, less 1 for each below the model. */
 	lanes_int whole = (lanes_int){0} + members / 2, near = {0};
 
@@ -157,7 +159,7 @@ static inline double total(const lanes_double *a)
 
 /* A run, with two accumulators in turn, so that one addition need not wait for the other. */
 __attribute__((always_inline)) static inline void run(int members, bool curved, const float *m, const float *w,
-						      const float *s, const struct lane_look *look,
+						      const float *s, const struct lane_evaluation *at,
 						      struct lane_sums *sums)
 {
 	struct accumulator a = {0}, b = {0};
@@ -166,8 +168,8 @@ __attribute__((always_inline)) static inline void run(int members, bool curved, 
 		/* What comes next in memory, the next channel or block: the processor's own prefetching ends at each page. */
 		for (int member = members; member < 2 * members; member++)
 			__builtin_prefetch(m + n + member * KERNEL_BLOCK);
-		add_lanes(members, curved, m + n, w + n, s + n, look, &a);
-		add_lanes(members, curved, m + n + LANES, w + n + LANES, s + n + LANES, look, &b);
+		add_lanes(members, curved, m + n, w + n, s + n, at, &a);
+		add_lanes(members, curved, m + n + LANES, w + n + LANES, s + n + LANES, at, &b);
 	}
 	sums->error += widen(a.error, b.error);
 	sums->slope_w += widen(a.slope_w, b.slope_w);
@@ -180,53 +182,53 @@ __attribute__((always_inline)) static inline void run(int members, bool curved, 
 }
 
 __attribute__((always_inline)) static inline void block(int members, bool curved, const float *m, const float *w,
-							const float *s, const struct kernel_evaluation *look,
+							const float *s, const struct kernel_evaluation *at,
 							struct kernel_sums *sums)
 {
 	const lanes zero = {0};
-	const struct lane_look all = {zero + (float)look->d, zero + (float)look->ks, zero + (float)look->tau,
-				      zero + (float)look->floor};
+	const struct lane_evaluation all = {zero + (float)at->d, zero + (float)at->ks, zero + (float)at->tau,
+					    zero + (float)at->floor};
 	struct lane_sums lane = {0};
 
-	for (int at = 0; at < KERNEL_BLOCK; at += RUN)
-		run(members, curved, m + at, w + at, s + at, &all, &lane);
+	for (int from = 0; from < KERNEL_BLOCK; from += RUN)
+		run(members, curved, m + from, w + from, s + from, &all, &lane);
 	*sums = (struct kernel_sums){
 		.error = total(&lane.error),
 		.slope = {-2 * total(&lane.slope_w), -2 * total(&lane.slope_s)},
 	};
 	if (curved) {
-		sums->curvature[0] = total(&lane.dd) / look->tau;
-		sums->curvature[1] = total(&lane.ds) / look->tau;
-		sums->curvature[2] = total(&lane.ss) / look->tau;
+		sums->curvature[0] = total(&lane.dd) / at->tau;
+		sums->curvature[1] = total(&lane.ds) / at->tau;
+		sums->curvature[2] = total(&lane.ss) / at->tau;
 	}
 }
 
 __attribute__((always_inline)) static inline void either_block(int members, const float *m, const float *w,
-							       const float *s, const struct kernel_evaluation *look,
+							       const float *s, const struct kernel_evaluation *at,
 							       struct kernel_sums *sums)
 {
-	if (look->tau > 0)
-		block(members, true, m, w, s, look, sums);
+	if (at->tau > 0)
+		block(members, true, m, w, s, at, sums);
 	else
-		block(members, false, m, w, s, look, sums);
+		block(members, false, m, w, s, at, sums);
 }
 
 /* Each count of members gets a loop of its own. */
-static void pass(int members, const float *m, const float *w, const float *s, const struct kernel_evaluation *look,
+static void pass(int members, const float *m, const float *w, const float *s, const struct kernel_evaluation *at,
 		 struct kernel_sums *sums)
 {
 	switch (members) {
 	case 1:
-		either_block(1, m, w, s, look, sums);
+		either_block(1, m, w, s, at, sums);
 		break;
 	case 2:
-		either_block(2, m, w, s, look, sums);
+		either_block(2, m, w, s, at, sums);
 		break;
 	case 3:
-		either_block(3, m, w, s, look, sums);
+		either_block(3, m, w, s, at, sums);
 		break;
 	case 6:
-		either_block(6, m, w, s, look, sums);
+		either_block(6, m, w, s, at, sums);
 		break;
 	}
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* kernel - the two loops in which a fit spends its time. Mathematics only: no threads, no allocation.
  *
- * A slot is one value of the model; it stands for one measured entry (single) or for two (pair), since
- * phi_d -> 180 deg - phi_d swaps wi and wo and leaves the model as it is. Slots come in blocks of
- * KERNEL_BLOCK, all of one sort, padded with slots whose members are all zero: those add nothing.
+ * A sample is one value of the model; it stands for one measured entry (single) or for two (pair), since
+ * phi_d -> 180 deg - phi_d swaps wi and wo and leaves the model as it is. Samples come in blocks of
+ * KERNEL_BLOCK, all of one sort, padded with samples whose members are all zero: those add nothing.
  * The file is compiled once for any machine and once for AVX2; kernel_pick() chooses at run time. Both give the same
  * bits: no sum depends on the width of a register, and no multiplication is joined with an addition. */
 #ifndef KERNEL_H
@@ -28,14 +28,14 @@ enum kernel_gaf {
 	KERNEL_STATIC,     /* G depends on the geometry alone and stands in geometric_factor already */
 };
 
-/* Geometry of one block of slots; see struct sample_set. */
+/* Geometry of one block of samples; see struct sample_set. */
 struct kernel_samples {
 	const int32_t *q_i, *q_o;
 	const float *geometric_factor;
 	const uint16_t *row;
 };
 
-/* Where a pass looks: d = kd/pi and ks. tau: relative width of the window in which the curvature is estimated, 0 for none;
+/* Where a pass evaluates the error: d = kd/pi and ks. tau: relative width of the window in which the curvature is estimated, 0 for none;
  * floor: added to the model, in units of the weight, where the window's width is concerned. */
 struct kernel_evaluation {
 	double d, ks, tau, floor;
@@ -52,11 +52,11 @@ struct kernel {
 	const char *name;
 	/* lobe - s = geometric_factor row[.] G for one block. */
 	void (*lobe)(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *row,
-		     const struct kernel_samples *slots, float *s);
-	/* pass - sums of one block. Of each slot it takes `members` values, KERNEL_BLOCK apart: 1 of a single and 2 of a
+		     const struct kernel_samples *samples, float *s);
+	/* pass - sums of one block. Of each sample it takes `members` values, KERNEL_BLOCK apart: 1 of a single and 2 of a
 	 * pair for one channel, 3 or 6 for the three channels under one kd and ks. */
 	void (*pass)(int members, const float *value, const float *w, const float *s,
-		     const struct kernel_evaluation *look, struct kernel_sums *sums);
+		     const struct kernel_evaluation *at, struct kernel_sums *sums);
 };
 
 extern const struct kernel kernel_plain;

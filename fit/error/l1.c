@@ -7,7 +7,7 @@
 #define WINDOW 0.1
 /* Newton steps without success before something else is tried. */
 enum { FAILURES = 2 };
-/* Looks near the best point, to certify it, before one that cuts the fence; twice as far out each time. */
+/* Evaluations near the best point, to certify it, before one that cuts the feasible polygon; twice as far out each time. */
 enum { NEARS = 4 };
 
 static bool is_curved(const double h[3])
@@ -109,7 +109,7 @@ void l1_start(struct l1 *l1, const double lo[2], const double hi[2], const doubl
 	l1->tolerance = tolerance;
 	l1->certify = certify;
 	l1->error = l1->gap = INFINITY;
-	l1->looks = l1->failed = l1->nears = l1->n_cuts = 0;
+	l1->evaluations = l1->failed = l1->nears = l1->n_cuts = 0;
 	l1->done = l1->snapped = false;
 	l1->cold = !start;
 	memcpy(l1->h, h ? h : unknown, sizeof l1->h);
@@ -117,7 +117,7 @@ void l1_start(struct l1 *l1, const double lo[2], const double hi[2], const doubl
 	for (int a = 0; a < 2; a++) {
 		l1->lo[a] = lo[a];
 		l1->hi[a] = hi[a];
-		/* The table is evaluated in float: ask only where float can look. */
+		/* The table is evaluated in float: ask only at floats. */
 		l1->x[a] = l1->best[a] = start ? (double)(float)clamp(start[a], lo[a], hi[a]) : lo[a];
 	}
 	l1->n_corners = rectangle(lo, hi, l1->corner);
@@ -195,7 +195,7 @@ static bool promising(const struct l1 *l1, const double x[2])
 	return true;
 }
 
-/* A best that all but touches an edge is looked at once more on it: bounds reached are reported. */
+/* A best that all but touches an edge is evaluated once more on it: bounds reached are reported. */
 static bool snap(struct l1 *l1)
 {
 	bool moved = false;
@@ -230,7 +230,7 @@ static void lowest_near(const struct l1 *l1, double x[2])
 	lowest(l1, lo, hi, x);
 }
 
-/* Rounds a point to where float can look. Returns whether that brings anything new. */
+/* Rounds a point to floats. Returns whether that brings anything new. */
 static bool is_new(const struct l1 *l1, double x[2])
 {
 	for (int a = 0; a < 2; a++)
@@ -238,7 +238,7 @@ static bool is_new(const struct l1 *l1, double x[2])
 	return (x[0] != l1->x[0] || x[1] != l1->x[1]) && (x[0] != l1->best[0] || x[1] != l1->best[1]);
 }
 
-/* Sets where to look next: a step from the best point that promises `gain`, or what cuts the fence. */
+/* Sets the next point: a step from the best point that promises `gain`, or what cuts the feasible polygon. */
 static void propose(struct l1 *l1, const double step[2], double gain)
 {
 	double x[2] = {l1->best[0] + step[0], l1->best[1] + step[1]};
@@ -271,7 +271,7 @@ static void learn(struct l1 *l1, const double slope[2])
 	double ys = y[0] * s[0] + y[1] * s[1];
 	const double shs = s[0] * hs[0] + s[1] * hs[1], least = 0.2 * shs;
 
-	if (l1->looks == 0 || !(shs > 0) || (ys > shs && ys <= 30 * l1->tolerance * l1->scale))
+	if (l1->evaluations == 0 || !(shs > 0) || (ys > shs && ys <= 30 * l1->tolerance * l1->scale))
 		return;
 	if (ys < least) {
 		const double part = (shs - least) / (shs - ys);
@@ -312,10 +312,10 @@ static void narrow(struct l1 *l1, double error, const double slope[2])
 	bool narrowed = false;
 
 	for (int a = 0; a < 2; a++) {
-		const double most = slope[a] < 0 ? -2 * error / slope[a] : INFINITY;
+		const double maximum = slope[a] < 0 ? -2 * error / slope[a] : INFINITY;
 
-		if (most < L1_FAR * l1->hi[a]) {
-			l1->hi[a] = most;
+		if (maximum < L1_FAR * l1->hi[a]) {
+			l1->hi[a] = maximum;
 			narrowed = true;
 		}
 	}
@@ -345,7 +345,7 @@ void l1_update(struct l1 *l1, double error, const double slope[2], const double 
 		learn(l1, slope);
 	const bool improved = add_cut(l1, error, slope);
 
-	l1->looks++;
+	l1->evaluations++;
 	if (l1->cold) {
 		guess(l1, error, slope);
 		return;
@@ -354,7 +354,7 @@ void l1_update(struct l1 *l1, double error, const double slope[2], const double 
 	l1->failed = improved ? 0 : l1->failed + 1;
 	const double gain = -newton_step(l1, step);
 
-	/* Newton's estimate is of use where the best point is looked at; elsewhere only the cuts can tell. */
+	/* Newton's estimate is of use where the best point is evaluated; elsewhere only the cuts can tell. */
 	if (!l1->certify && is_curved(l1->h) && improved)
 		l1->gap = gain;
 	else

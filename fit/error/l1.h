@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* l1 - minimises a convex function of two variables in a box, where a look at it costs a pass over a table.
+/* l1 - minimises a convex function of two variables in a box, where an evaluation costs a pass over a table.
  *
  * Here the function is sum_j |m_j - kd a_j - ks s_j|: convex, piecewise linear, nearly smooth when there are many
  * terms. The caller evaluates, the solver proposes:
@@ -10,9 +10,9 @@
  *             l1_update(&l1, error, slope, curvature);
  *     }
  *
- * Every look leaves a cutting plane. The planes bound the minimum from below (l1_lower_bound) and fence in where it
- * lies. Within the fence a Newton step is tried, on second derivatives that the table gives at first and the slopes seen
- * correct from then on; else the fence's centroid, which cuts its area by a constant factor: it ends for any convex
+ * Every evaluation leaves a cutting plane. The planes bound the minimum from below (l1_lower_bound) and enclose it in a polygon,
+ * the feasible one. Within it a Newton step is tried, on second derivatives that the table gives at first and the slopes seen
+ * correct from then on; else the polygon's centroid, which cuts its area by a constant factor: it ends for any convex
  * function. */
 #ifndef L1_H
 #define L1_H
@@ -29,20 +29,20 @@ struct l1_cut {
 };
 
 struct l1 {
-	double lo[2], hi[2];      /* the box */
-	double scale;             /* tolerances are relative to this, the error at kd = ks = 0 */
-	double tolerance;         /* stop when the gap is below tolerance * scale */
-	bool certify;             /* the gap is the certified one; else Newton's estimate of it */
-	double x[2], tau;         /* where to look next, and the relative width of the curvature's window, 0 for none */
+	double lo[2], hi[2]; /* the box */
+	double scale;        /* tolerances are relative to this, the error at kd = ks = 0 */
+	double tolerance;    /* stop when the gap is below tolerance * scale */
+	bool certify;        /* the gap is the certified one; else Newton's estimate of it */
+	double x[2], tau;    /* where to evaluate next, and the relative width of the curvature's window, 0 for none */
 	double best[2], error;    /* the best so far */
 	double slope[2], h[3];    /* a subgradient there, and the second derivatives xx, xy, yy; all 0: unknown */
 	double gap;               /* estimated or certified distance of `error` from the minimum */
-	int looks, failed;        /* failed: the last looks that brought nothing better */
-	int nears;                /* looks taken near the best point, to certify it */
+	int evaluations, failed;  /* failed: the last evaluations that brought nothing better */
+	int nears;                /* evaluations near the best point, to certify it */
 	bool cold, snapped, done; /* done: best, error, h and gap are final */
 	int n_cuts;
 	struct l1_cut cut[L1_CUTS];
-	int n_corners; /* the fence: a convex polygon that holds every minimiser */
+	int n_corners; /* the feasible polygon: a convex polygon that holds every minimiser */
 	double corner[L1_CORNERS][2];
 };
 

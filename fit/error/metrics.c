@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/error/metrics.h"
+#include "fit/error/error_sum.h"
 #include "fit/error/masking.h"
 #include <math.h>
 #include <stdlib.h>
@@ -12,10 +13,10 @@ struct sums {
 };
 
 /* The entries of one row (theta_h, theta_d): measured m, model f and c = cos_i cos_o. */
-enum { ROW_MOST = 4 * 91 };
+enum { ROW_MAX = 4 * 91 };
 struct row {
 	int n;
-	double c[ROW_MOST], lobe[ROW_MOST], m[MERL_CHANNELS][ROW_MOST];
+	double c[ROW_MAX], lobe[ROW_MAX], m[MERL_CHANNELS][ROW_MAX];
 };
 
 /* Cube root to float precision, in a form that vectorises: a first guess from the exponent, two steps of Halley. */
@@ -47,11 +48,11 @@ static void sum_row(const struct row *row, const struct cook_torrance *model, do
 
 #pragma omp simd reduction(+ : d_none, d_cosine, m_none, m_cosine, square, root)
 		for (int n = 0; n < row->n; n++) {
-			const double f = kd + ks * row->lobe[n], r = fabs(m[n] - f), w = row->c[n];
+			const double f = kd + ks * row->lobe[n], w = row->c[n], r = error_term(1, m[n], f);
 			const float step = cube_root((float)(w * m[n])) - cube_root((float)(w * f));
 
 			d_none += r;
-			d_cosine += w * r;
+			d_cosine += error_term(w, m[n], f);
 			m_none += m[n];
 			m_cosine += w * m[n];
 			square += w * w * r * r;
@@ -81,7 +82,7 @@ static void sum_row(const struct row *row, const struct cook_torrance *model, do
 	sums->n += (size_t)row->n * MERL_CHANNELS;
 }
 
-/* Adds the valid entries of slot n to the row. */
+/* Adds the valid entries of sample n to the row. */
 static void add_entries(struct row *row, const struct geometry *g, const struct measurement *measurement, int n,
 			double c, double lobe)
 {
@@ -89,7 +90,7 @@ static void add_entries(struct row *row, const struct geometry *g, const struct 
 	const int count = geometry_members(g, n, k);
 
 	for (int a = 0; a < count; a++) {
-		const size_t at = (size_t)g->row[n] * (size_t)g->n_phi_d + (size_t)k[a];
+		const size_t at = measurement_at(g->n_phi_d, 0, g->row[n], k[a]);
 
 		if (isnan(measurement->value[0][at]))
 			continue;
@@ -130,7 +131,7 @@ static double cos_product(const struct geometry *g, int n)
 	return (a - b) * (a + b);
 }
 
-/* c: cos_i cos_o of slot n. */
+/* c: cos_i cos_o of sample n. */
 static double lobe_at(const struct parts *p, const struct geometry *g, int n, double c)
 {
 	const double spread = p->D[g->row[n] / MERL_THETA_D] * p->F[g->row[n] % MERL_THETA_D];
@@ -138,11 +139,8 @@ static double lobe_at(const struct parts *p, const struct geometry *g, int n, do
 	/* geometric_factor and w both carry the weight of the fit; geometric_factor alone has the v-groove's G. */
 	if (g->criterion.gaf == GAF_V_GROOVE)
 		return spread * (double)g->geometric_factor[n] / (double)g->w[n];
-	const double i = masking_at(&p->masking, g->q_i[n]), o = masking_at(&p->masking, g->q_o[n]);
-
-	if (g->criterion.gaf == GAF_UNCORRELATED)
-		return spread * i * o / (4 * c);
-	return i > 0 && o > 0 ? spread / (4 * c * (1 / i + 1 / o - 1)) : 0;
+	return cook_torrance_from_G1(g->criterion.gaf, spread, masking_at(&p->masking, g->q_i[n]),
+				     masking_at(&p->masking, g->q_o[n]), c);
 }
 
 /* One theta_h, all its rows into sums[0] or each into sums[its theta_d]. */
@@ -190,7 +188,7 @@ enum status metrics_compute(const struct geometry *g, const struct measurement *
 	if (!(all.measured[WEIGHT_COSINE] > 0))
 		return STATUS_NO_DATA;
 	for (int w = 0; w < WEIGHT_COUNT; w++)
-		metrics->error[w] = all.difference[w] / all.measured[w];
+		metrics->error[w] = error_ratio(all.difference[w], all.measured[w]);
 	metrics->rms_cosine = sqrt(all.square / (double)all.n);
 	metrics->rms_cube_root = sqrt(all.cube_root / (double)all.n);
 	metrics->log_error = all.log / (double)all.n;

@@ -11,7 +11,7 @@ enum status objective_init(struct objective *o, const struct sample_set *table, 
 		.table = table, .options = options, .class = class, .kernel = kernel_pick(), .threads = threads};
 	o->tabulated.sigma = NAN;
 	objective_forget(o);
-	objective_unpin(o);
+	objective_unfix(o);
 	o->s = aligned_alloc(64, (size_t)table->n_blocks * KERNEL_BLOCK * sizeof *o->s);
 	o->sums = malloc((size_t)table->n_blocks * sizeof *o->sums);
 	if (!o->s || !o->sums || masking_init(&o->masking, table->geometry->q_min, density) != STATUS_OK) {
@@ -106,34 +106,34 @@ static void lobe_block(struct objective *o, int block)
 						       [GAF_CORRELATED] = KERNEL_CORRELATED,
 						       [GAF_V_GROOVE] = KERNEL_STATIC};
 	const struct kernel_g1 g1 = masking_kernel(&o->masking);
-	const struct kernel_samples slots = sample_set_block(o->table, block);
+	const struct kernel_samples samples = sample_set_block(o->table, block);
 
-	o->kernel->lobe(gaf[o->options->criterion.gaf], &g1, o->row, &slots, o->s + (size_t)block * KERNEL_BLOCK);
+	o->kernel->lobe(gaf[o->options->criterion.gaf], &g1, o->row, &samples, o->s + (size_t)block * KERNEL_BLOCK);
 }
 
 /* What a pass is asked by each of the problems, one a channel or one for all of them. */
-struct look {
+struct evaluation {
 	int n_problems;
 	bool wanted[MERL_CHANNELS];
 	struct kernel_evaluation at[MERL_CHANNELS];
 };
 
-static void pass_block(struct objective *o, const struct look *look, int block)
+static void pass_block(struct objective *o, const struct evaluation *asked, int block)
 {
 	const struct sample_set *t = o->table;
 	const size_t at = (size_t)block * KERNEL_BLOCK;
-	const int members = (block < t->n_pair_blocks ? 2 : 1) * MERL_CHANNELS / look->n_problems;
+	const int members = (block < t->n_pair_blocks ? 2 : 1) * MERL_CHANNELS / asked->n_problems;
 
-	for (int p = 0; p < look->n_problems; p++)
-		if (look->wanted[p])
-			o->kernel->pass(members, sample_set_value(t, block, p), t->w + at, o->s + at, &look->at[p],
+	for (int p = 0; p < asked->n_problems; p++)
+		if (asked->wanted[p])
+			o->kernel->pass(members, sample_set_value(t, block, p), t->w + at, o->s + at, &asked->at[p],
 					&o->sums[block][p]);
 }
 
 /* One pass over the table; with `lobe`, s is computed on the way, while each block is in cache. The blocks' sums are
  * added in their order: the result is the same to the bit for any number of threads. Tasks, not a parallel loop: on a
  * busy machine this thread then does what the others do not come to, and never waits for one that has not begun. */
-static void pass(struct objective *o, const struct look *look, bool lobe, struct kernel_sums total[])
+static void pass(struct objective *o, const struct evaluation *asked, bool lobe, struct kernel_sums total[])
 {
 	enum { CHUNK = 8 };
 	const size_t n_blocks = (size_t)o->table->n_blocks;
@@ -145,12 +145,12 @@ static void pass(struct objective *o, const struct look *look, bool lobe, struct
 	for (size_t block = 0; block < n_blocks; block++) {
 		if (lobe)
 			lobe_block(o, (int)block);
-		pass_block(o, look, (int)block);
+		pass_block(o, asked, (int)block);
 	}
 #pragma GCC diagnostic pop
-	for (int p = 0; p < look->n_problems; p++) {
+	for (int p = 0; p < asked->n_problems; p++) {
 		total[p] = (struct kernel_sums){0};
-		for (size_t block = 0; look->wanted[p] && block < n_blocks; block++) {
+		for (size_t block = 0; asked->wanted[p] && block < n_blocks; block++) {
 			const struct kernel_sums *sums = &o->sums[block][p];
 
 			total[p].error += sums->error;
@@ -187,7 +187,7 @@ static double diffuse_value(double kd)
 	return (double)(float)(kd / M_PI);
 }
 
-void objective_unpin(struct objective *o)
+void objective_unfix(struct objective *o)
 {
 	const struct fit_options *options = o->options;
 	const double kd = options->diffuse ? diffuse_value(objective_upper_bound(options, false)) : 0;
@@ -197,7 +197,7 @@ void objective_unpin(struct objective *o)
 		o->box[c] = (struct objective_box){{0, 0}, {kd, ks}};
 }
 
-void objective_pin(struct objective *o, int channel, bool specular, double value)
+void objective_fix(struct objective *o, int channel, bool specular, double value)
 {
 	const double at = specular ? (double)(float)value : diffuse_value(value);
 
@@ -240,9 +240,9 @@ static void start(const struct objective *o, struct l1 problem[], int n_problems
 /* On the bound to the last bit: kd is then the bound itself. */
 static double kd_of(const struct objective *o, double diffuse)
 {
-	const double most = objective_upper_bound(o->options, false);
+	const double maximum = objective_upper_bound(o->options, false);
 
-	return diffuse < diffuse_value(most) ? diffuse * M_PI : most;
+	return diffuse < diffuse_value(maximum) ? diffuse * M_PI : maximum;
 }
 
 static void finish(const struct objective *o, const struct l1 problem[], int n_problems, struct linear *linear)
@@ -266,7 +266,7 @@ static void finish(const struct objective *o, const struct l1 problem[], int n_p
 	}
 }
 
-/* A fiftieth of the mean measurement: below it, how near a residual is to 0 is told by the data, not by the model. */
+/* A fiftieth of the mean measurement: below it, how near a residual is to 0 is decided by the data, not by the model. */
 static double window_floor(const struct objective *o, int p)
 {
 	return 0.02 * mean_measured(o, p);
@@ -287,14 +287,14 @@ double objective_eval(struct objective *o, const struct shape *shape, double tol
 	fill_rows(o, shape);
 	start(o, problem, n_problems, tolerance, certify);
 	while (going) {
-		struct look look = {.n_problems = n_problems};
+		struct evaluation asked = {.n_problems = n_problems};
 
 		for (int p = 0; p < n_problems; p++) {
-			look.wanted[p] = !problem[p].done;
-			look.at[p] = (struct kernel_evaluation){problem[p].x[0], problem[p].x[1], problem[p].tau,
-								window_floor(o, p)};
+			asked.wanted[p] = !problem[p].done;
+			asked.at[p] = (struct kernel_evaluation){problem[p].x[0], problem[p].x[1], problem[p].tau,
+								 window_floor(o, p)};
 		}
-		pass(o, &look, lobe, total);
+		pass(o, &asked, lobe, total);
 		lobe = going = false;
 		for (int p = 0; p < n_problems; p++) {
 			if (!problem[p].done)
@@ -311,16 +311,16 @@ double objective_error(struct objective *o, const struct shape *shape, const dou
 {
 	double error = 0, sum = 0;
 	struct kernel_sums total[MERL_CHANNELS];
-	struct look look = {.n_problems = MERL_CHANNELS};
+	struct evaluation asked = {.n_problems = MERL_CHANNELS};
 
 	if (tabulate(o, shape) != STATUS_OK)
 		return OBJECTIVE_NO_FIT;
 	fill_rows(o, shape);
 	for (int c = 0; c < MERL_CHANNELS; c++) {
-		look.wanted[c] = true;
-		look.at[c] = (struct kernel_evaluation){.d = kd[c] / M_PI, .ks = ks[c]};
+		asked.wanted[c] = true;
+		asked.at[c] = (struct kernel_evaluation){.d = kd[c] / M_PI, .ks = ks[c]};
 	}
-	pass(o, &look, true, total);
+	pass(o, &asked, true, total);
 	for (int c = 0; c < MERL_CHANNELS; c++) {
 		error += total[c].error;
 		sum += o->table->sum[c];

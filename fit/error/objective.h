@@ -23,7 +23,7 @@ struct linear {
 	double error;                  /* E */
 	double h[MERL_CHANNELS][3];    /* what the solve has learnt of the second derivatives by (kd/pi, ks) */
 	double channel[MERL_CHANNELS]; /* the part of E that each has; of a gray fit the first stands for all */
-	double lower_bound;            /* no kd, ks of this shape goes below it (certified looks only; else 0) */
+	double lower_bound;            /* no kd, ks of this shape goes below it (certified evaluations only; else 0) */
 };
 
 /* An error that no fit can have (kd = ks = 0 gives 1), finite as nlopt wants it. */
@@ -36,7 +36,7 @@ struct objective {
 	const struct kernel *kernel;
 	int threads;            /* more than 1: called by one thread of an OpenMP team, whose others help */
 	struct masking masking; /* G1 of the shape */
-	float *s;               /* the lobe, a float a slot */
+	float *s;               /* the lobe, a float a sample */
 	struct kernel_sums (*sums)[MERL_CHANNELS]; /* one set a block */
 	double D[MERL_THETA_H];
 	float row[MERL_ROWS];
@@ -46,7 +46,7 @@ struct objective {
 	struct linear start;    /* where the next inner solve begins: the last one's end */
 	struct objective_box {
 		double lo[2], hi[2]; /* of kd/pi and ks */
-	} box[MERL_CHANNELS];        /* as the options have it, but for what is pinned */
+	} box[MERL_CHANNELS];        /* as the options have it, but for what is fixed */
 };
 
 /* objective_init - buffers for one table and one NDF. */
@@ -61,16 +61,16 @@ void objective_begin(struct objective *objective, const struct linear *linear);
 
 /* objective_upper_bound - the upper end of kd, or of ks: far beyond any material when unbounded. */
 double objective_upper_bound(const struct fit_options *options, bool specular);
-/* objective_pin - holds kd (or ks) of a channel, of all of them in a gray fit, at a value from now on;
- * objective_unpin - all are free again. */
-void objective_pin(struct objective *objective, int channel, bool specular, double value);
-void objective_unpin(struct objective *objective);
+/* objective_fix - holds kd (or ks) of a channel, of all of them in a gray fit, at a value from now on;
+ * objective_unfix - all are free again. */
+void objective_fix(struct objective *objective, int channel, bool specular, double value);
+void objective_unfix(struct objective *objective);
 
 /* objective_use - from now on the given isotropic distribution, whatever sigma and gamma a shape has; *ndf is only read
  * during the call. */
 void objective_use(struct objective *objective, const struct ndf *ndf);
 
-/* objective_lobe - the specular term of a shape for ks = 1, slot by slot, into objective->s.
+/* objective_lobe - the specular term of a shape for ks = 1, sample by sample, into objective->s.
  * Returns STATUS_DOMAIN outside the NDF's domain. */
 MUST_CHECK enum status objective_lobe(struct objective *objective, const struct shape *shape);
 

@@ -9,8 +9,8 @@ static const double degree = M_PI / 180;
 
 double cell_measure(int i, int j)
 {
-	const double h0 = i * i / 90.0 * degree, h1 = (i + 1) * (i + 1) / 90.0 * degree;
-	const double d0 = j * degree, d1 = (j + 1) * degree;
+	const struct halfdiff low = bins_angles(BINS_NODE, i, j, 0), high = bins_angles(BINS_NODE, i + 1, j + 1, 0);
+	const double h0 = low.theta_h, h1 = high.theta_h, d0 = low.theta_d, d1 = high.theta_d;
 	/* cos a - cos b and (sin^2 b - sin^2 a)/2 as products: no cancellation in narrow cells. */
 	const double w_h = 2 * M_PI * 2 * sin((h0 + h1) / 2) * sin((h1 - h0) / 2);
 	const double w_d = sin(d0 + d1) * sin(d1 - d0) / 2;
@@ -31,15 +31,9 @@ double weight_at(enum weight weight, int i, int j, double cos_i, double cos_o)
 	}
 }
 
-/* Entries k and half - k have the same model value; at centres the mirror of k is half - 1 - k. */
-static int mirror(enum bins bins, int k)
-{
-	return (bins == BINS_NODE ? 180 : 179) - k;
-}
-
 int geometry_members(const struct geometry *geometry, int n, int k[4])
 {
-	const int first = geometry->k[n], second = mirror(geometry->criterion.bins, first);
+	const int first = geometry->k[n], second = bins_mirror(geometry->criterion.bins, first);
 	int count = 0;
 
 	k[count++] = first;
@@ -75,16 +69,16 @@ static void set_sample(struct geometry *g, int n, int i, int j, int k, struct ve
 
 	g->q_i[n] = masking_q(wi);
 	g->q_o[n] = masking_q(wo);
-	g->geometric_factor[n] = (float)(w * G / (4 * wi.z * wo.z));
+	g->geometric_factor[n] = (float)cook_torrance_from_G(w, G, wi.z * wo.z);
 	g->w[n] = (float)w;
 	g->row[n] = (uint16_t)(j + MERL_THETA_D * i);
 	g->k[n] = (uint16_t)k;
 }
 
-/* Fills in the slots of one theta_h from place n on, or only counts them when n < 0. */
+/* Fills in the samples of one theta_h from index n on, or only counts them when n < 0. */
 static int row_samples(struct geometry *g, int i, double min_cos, int n)
 {
-	const int last_k = g->criterion.bins == BINS_NODE ? 90 : 89;
+	const int last_k = bins_mirror(g->criterion.bins, 0) / 2; /* the last one before its own mirror, or on it */
 	struct vec3 wi, wo;
 	int count = 0;
 
@@ -155,18 +149,18 @@ static enum status table_alloc(struct sample_set *table, const struct geometry *
 {
 	const int pair_blocks = (n_pairs + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
 	const int single_blocks = (n_singles + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
-	const size_t slots = (size_t)(pair_blocks + single_blocks) * KERNEL_BLOCK;
+	const size_t samples = (size_t)(pair_blocks + single_blocks) * KERNEL_BLOCK;
 	const size_t values = (size_t)(2 * pair_blocks + single_blocks) * MERL_CHANNELS * KERNEL_BLOCK;
 
 	*table = (struct sample_set){.geometry = geometry,
 				     .n_blocks = pair_blocks + single_blocks,
 				     .n_pair_blocks = pair_blocks,
 				     .n_samples = n_pairs + n_singles};
-	table->q_i = aligned_alloc(64, slots * sizeof *table->q_i);
-	table->q_o = aligned_alloc(64, slots * sizeof *table->q_o);
-	table->geometric_factor = aligned_alloc(64, slots * sizeof *table->geometric_factor);
-	table->w = aligned_alloc(64, slots * sizeof *table->w);
-	table->row = aligned_alloc(64, slots * sizeof *table->row);
+	table->q_i = aligned_alloc(64, samples * sizeof *table->q_i);
+	table->q_o = aligned_alloc(64, samples * sizeof *table->q_o);
+	table->geometric_factor = aligned_alloc(64, samples * sizeof *table->geometric_factor);
+	table->w = aligned_alloc(64, samples * sizeof *table->w);
+	table->row = aligned_alloc(64, samples * sizeof *table->row);
 	table->value = aligned_alloc(64, values * sizeof *table->value);
 	if (!table->q_i || !table->q_o || !table->geometric_factor || !table->w || !table->row || !table->value) {
 		sample_set_free(table);
@@ -186,7 +180,7 @@ void sample_set_free(struct sample_set *table)
 	*table = (struct sample_set){0};
 }
 
-/* Fills the unused tail of the pairs, or of the singles, with slots that add nothing. */
+/* Fills the unused tail of the pairs, or of the singles, with samples that add nothing. */
 static void pad(struct sample_set *table, size_t from, int end_block)
 {
 	for (size_t n = from; n < (size_t)end_block * KERNEL_BLOCK; n++) {
@@ -209,14 +203,14 @@ static void pad_all(struct sample_set *table, size_t n_pairs, size_t n_singles)
 	pad(table, (size_t)table->n_pair_blocks * KERNEL_BLOCK + n_singles, table->n_blocks);
 }
 
-/* The valid entries of slot n, as offsets into the planes. */
+/* The valid entries of sample n, as offsets into the planes. */
 static int valid_members(const struct geometry *g, const struct measurement *measurement, int n, size_t at[4])
 {
 	int k[4], valid = 0;
 	const int count = geometry_members(g, n, k);
 
 	for (int a = 0; a < count; a++) {
-		const size_t entry = (size_t)g->row[n] * (size_t)g->n_phi_d + (size_t)k[a];
+		const size_t entry = measurement_at(g->n_phi_d, 0, g->row[n], k[a]);
 
 		if (!isnan(measurement->value[0][entry]))
 			at[valid++] = entry;
@@ -225,7 +219,7 @@ static int valid_members(const struct geometry *g, const struct measurement *mea
 }
 
 struct fill {
-	size_t pair, single; /* next free place of each sort */
+	size_t pair, single; /* next free index of each sort */
 	double sum[MERL_CHANNELS], sum_w;
 };
 
@@ -275,10 +269,10 @@ static void keep_in_range(struct sample_set *table)
 	if (!(total > 1e30))
 		return;
 	const double scale = exp2(-ceil(log2(total * 1e-20)));
-	const size_t slots = (size_t)table->n_blocks * KERNEL_BLOCK;
+	const size_t samples = (size_t)table->n_blocks * KERNEL_BLOCK;
 	const size_t values = (size_t)(table->n_blocks + table->n_pair_blocks) * (size_t)MERL_CHANNELS * KERNEL_BLOCK;
 
-	for (size_t n = 0; n < slots; n++) {
+	for (size_t n = 0; n < samples; n++) {
 		table->geometric_factor[n] *= (float)scale;
 		table->w[n] *= (float)scale;
 	}
@@ -295,7 +289,7 @@ enum status sample_set_init(struct sample_set *table, const struct geometry *g, 
 	struct fill fill[MERL_THETA_H + 1] = {0};
 	enum status status;
 
-	/* Count first: each row then knows where its slots go, whatever thread fills it. */
+	/* Count first: each row then knows where its samples go, whatever thread fills it. */
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
 	for (int i = 0; i < MERL_THETA_H; i++)
 		for (int n = g->first[i]; n < g->first[i + 1]; n++) {
@@ -341,7 +335,7 @@ static bool is_padding(const struct sample_set *table, size_t n)
 	return table->w[n] == 0;
 }
 
-/* What is measured in slot n, as a share of the table's sum: channels count alike. */
+/* What is measured in sample n, as a share of the table's sum: channels count alike. */
 static double measured_share(const struct sample_set *table, size_t n)
 {
 	const int members = n < (size_t)table->n_pair_blocks * KERNEL_BLOCK ? 2 : 1;
@@ -394,8 +388,8 @@ static void copy_sample(struct sample_set *to, size_t b, const struct sample_set
 	}
 }
 
-/* Systematic sampling: slot n is taken when the running sum of p passes a whole number within it. */
-static bool taken(const float *p, size_t n, double *running)
+/* Systematic sampling: sample n is selected when the running sum of p passes a whole number within it. */
+static bool is_selected(const float *p, size_t n, double *running)
 {
 	const double before = floor(*running);
 
@@ -408,7 +402,7 @@ enum status sample_set_thin(struct sample_set *table, const struct sample_set *f
 	const size_t count = (size_t)full->n_blocks * KERNEL_BLOCK,
 		     pairs_end = (size_t)full->n_pair_blocks * KERNEL_BLOCK;
 	const double even = 1.0 / full->n_samples;
-	size_t n_taken[2] = {0, 0}, to[2];
+	size_t n_selected[2] = {0, 0}, to[2];
 	double running = 0.5;
 	enum status status;
 	float *p = malloc(count * sizeof *p);
@@ -419,17 +413,17 @@ enum status sample_set_thin(struct sample_set *table, const struct sample_set *f
 		p[n] = is_padding(full, n) ? 0 : (float)(n_samples * (0.75 * measured_share(full, n) + 0.25 * even));
 	scale_to(p, count, fmin(n_samples, full->n_samples));
 	for (size_t n = 0; n < count; n++)
-		n_taken[n >= pairs_end] += taken(p, n, &running);
-	status = table_alloc(table, full->geometry, (int)n_taken[0], (int)n_taken[1]);
+		n_selected[n >= pairs_end] += is_selected(p, n, &running);
+	status = table_alloc(table, full->geometry, (int)n_selected[0], (int)n_selected[1]);
 	if (status != STATUS_OK)
 		goto out;
 	to[0] = 0;
 	to[1] = (size_t)table->n_pair_blocks * KERNEL_BLOCK;
 	running = 0.5;
 	for (size_t n = 0; n < count; n++)
-		if (taken(p, n, &running))
+		if (is_selected(p, n, &running))
 			copy_sample(table, to[n >= pairs_end]++, full, n, n < pairs_end ? 2 : 1, 1 / p[n]);
-	pad_all(table, n_taken[0], n_taken[1]);
+	pad_all(table, n_selected[0], n_selected[1]);
 	memcpy(table->sum, full->sum, sizeof table->sum);
 	table->sum_w = full->sum_w;
 	table->n_entries = full->n_entries;

@@ -10,8 +10,8 @@
 
 enum { MERL_ROWS = MERL_THETA_H * MERL_THETA_D };
 
-/* struct geometry - everything about a kind of table that no material changes: its slots, row by row.
- * Slot n stands for the entries k of row (i, j) with the same model value: k, half - k, half + k, 2 half - k. */
+/* struct geometry - everything about a kind of table that no material changes: its samples, row by row.
+ * Sample n stands for the entries k of row (i, j) with the same model value: k, half - k, half + k, 2 half - k. */
 struct geometry {
 	int n_phi_d;
 	struct criterion criterion; /* that it was made for */
@@ -19,24 +19,24 @@ struct geometry {
 	int32_t *q_i, *q_o;          /* masking_q() of wi and wo */
 	float *geometric_factor;     /* w / (4 cos_i cos_o), times G for GAF_V_GROOVE */
 	float *w;                    /* weight of an entry */
-	uint16_t *row;               /* theta_d index + 90 theta_h index */
-	uint16_t *k;                 /* phi_d index of the first entry of the slot */
-	int first[MERL_THETA_H + 1]; /* slots of theta_h index i are first[i] .. first[i + 1] - 1 */
-	int32_t q_min;               /* smallest q of all slots */
+	uint16_t *row;               /* theta_d index + 90 theta_h index: j of measurement_at() for i = 0 */
+	uint16_t *k;                 /* phi_d index of the first entry of the sample */
+	int first[MERL_THETA_H + 1]; /* samples of theta_h index i are first[i] .. first[i + 1] - 1 */
+	int32_t q_min;               /* smallest q of all samples */
 	struct entries entries;
 };
 
-/* geometry_init - the slots above the horizon and within max_theta, under the options' weight, bins and G. */
+/* geometry_init - the samples above the horizon and within max_theta, under the options' weight, bins and G. */
 MUST_CHECK enum status geometry_init(struct geometry *geometry, int n_phi_d, const struct fit_options *options);
 void geometry_free(struct geometry *geometry);
-/* geometry_members - entries k of slot n, two or four of them (equal ones once), into k[]. Returns how many. */
+/* geometry_members - entries k of sample n, two or four of them (equal ones once), into k[]. Returns how many. */
 int geometry_members(const struct geometry *geometry, int n, int k[4]);
 
 /* struct sample_set - the valid entries of one material, or a weighted sample of them. */
 struct sample_set {
 	const struct geometry *geometry;
 	int n_blocks, n_pair_blocks; /* blocks of pairs stand first, then blocks of singles */
-	int n_samples;               /* slots in use, padding left out */
+	int n_samples;               /* samples in use, padding left out */
 	int32_t *q_i, *q_o;          /* n_blocks * KERNEL_BLOCK of each */
 	float *geometric_factor, *w;
 	uint16_t *row;
@@ -49,9 +49,9 @@ struct sample_set {
 /* sample_set_init - takes the valid entries out of `samples`. STATUS_NO_DATA when there is none or all are zero. */
 MUST_CHECK enum status sample_set_init(struct sample_set *table, const struct geometry *geometry,
 				       const struct measurement *measurement, int threads);
-/* sample_set_thin - a weighted sample of about n_samples slots whose sums estimate those of `full`.
- * Slots are taken systematically with probability p, three parts by what is measured there to one part evenly, and
- * weigh 1/p: a slot where the measurement is large, and so may be the error, is hardly ever missed. */
+/* sample_set_thin - a weighted sample of about n_samples samples whose sums estimate those of `full`.
+ * Samples are selected systematically with probability p, three parts by what is measured there to one part evenly, and
+ * weigh 1/p: a sample where the measurement is large, and so may be the error, is hardly ever missed. */
 MUST_CHECK enum status sample_set_thin(struct sample_set *table, const struct sample_set *full, int n_samples);
 void sample_set_free(struct sample_set *table);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* weighted_median - the factor D of a model m = below + D per_D that is nearest to many values in the L1 sense. */
+/* weighted_median - the factor D >= 0 of a term of the model, kd among them, that is nearest to many values in the L1 sense. */
 #ifndef WEIGHTED_MEDIAN_H
 #define WEIGHTED_MEDIAN_H
 

@@ -41,9 +41,9 @@ struct export
 	enum export_format format;
 	struct export_source source;
 	struct cook_torrance model; /* the source's, or the one fitted in its place */
-	bool stand_in;              /* the latter */
+	bool substitute;            /* the latter */
 	char why[EXPORT_TEXT];      /* one line: "exact: ..." or "approximate: ..." */
-	char cost[EXPORT_TEXT];     /* one line: what the stand-in costs; "" if there is none */
+	char cost[EXPORT_TEXT];     /* one line: what the substitute costs; "" if there is none */
 };
 
 /* export_wants_samples - whether a model has to be fitted in the place of this one, for which the measurement would be

@@ -27,7 +27,7 @@ static bool is_named(const struct ndf *ndf, const char *name)
 
 static bool is_student_t(const struct ndf *ndf)
 {
-	return is_named(ndf, "std") || is_named(ndf, "hyper-cauchy") || is_named(ndf, "t-family");
+	return ndf_is_student_t(ndf->class);
 }
 
 static enum lambda_kind lambda_kind(const struct ndf *ndf)
@@ -186,7 +186,7 @@ static enum status write_D(struct glsl *glsl, struct error *error)
 {
 	const struct ndf *ndf = &glsl->model->ndf;
 	const double sigma = ndf->sigma_x;
-	if (is_named(ndf, "pl"))
+	if (ndf_is_tabulated(ndf->class))
 		return write_D_pl(glsl, error);
 	lines(glsl, log_1p);
 	if (is_named(ndf, "gtr")) {

@@ -8,7 +8,7 @@
 /* struct export_target - what a format supplies. */
 struct export_target {
 	const char *name;
-	/* Fills model, stand_in, why and cost of *export, whose source is set. Errors as export_prepare(). */
+	/* Fills model, substitute, why and cost of *export, whose source is set. Errors as export_prepare(). */
 	enum status (*prepare)(struct export *export, struct error *error);
 	/* As export_write(); NULL: EXPORT_MERL. */
 	enum status (*write)(const struct export *export, FILE *file, struct error *error);

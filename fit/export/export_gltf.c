@@ -5,9 +5,10 @@
  * D of GGX with sigma = roughness^2, G height-correlated: so every export is approximate, and its error is measured with
  * that formula. s = max ks, specularColor = ks/s. */
 #include "fit/error/entries.h"
+#include "fit/error/error_sum.h"
 #include "fit/error/sample_set.h"
 #include "fit/export/export_format.h"
-#include "fit/export/stand_in.h"
+#include "fit/export/substitute.h"
 #include "fit/results/csv_number.h"
 
 #include <string.h>
@@ -26,16 +27,16 @@ static void gltf_f(const struct cook_torrance *model, struct vec3 wi, struct vec
 	struct cook_torrance lobe = *model;
 	const double s = export_max(model->ks), root = (model->n - 1) / (model->n + 1);
 	const double x = 1 - fmin(0.5 * vec3_length(vec3_add(wi, wo)), 1);
-	double F[3], most = 0;
+	double F[3], largest = 0;
 	lobe.fresnel = FRESNEL_NONE;
 	const double DG = s > 0 ? cook_torrance_lobe(&lobe, wi, wo) : 0;
 	for (int c = 0; c < 3; c++) {
 		const double F0 = s > 0 ? fmin(root * root * model->ks[c] / s, 1) : 0;
 		F[c] = s * (F0 + (1 - F0) * (x * x) * (x * x) * x);
-		most = fmax(most, F[c]);
+		largest = fmax(largest, F[c]);
 	}
 	for (int c = 0; c < 3; c++)
-		f[c] = (1 - most) * model->kd[c] * M_1_PI + F[c] * DG;
+		f[c] = (1 - largest) * model->kd[c] * M_1_PI + F[c] * DG;
 }
 
 /* Sums of row i of the table: w |m - f| and w m. */
@@ -55,7 +56,7 @@ static void add_row(const struct export *export, const struct measurement *measu
 			gltf_f(&export->model, wi, wo, f);
 			const double w = weight_at(fit->criterion.weight, i, j, wi.z, wo.z);
 			for (int c = 0; c < MERL_CHANNELS; c++) {
-				sum[0] += w * fabs((double)measurement->value[c][at] - f[c]);
+				sum[0] += error_term(w, (double)measurement->value[c][at], f[c]);
 				sum[1] += w * (double)measurement->value[c][at];
 			}
 		}
@@ -73,31 +74,31 @@ static double gltf_error(const struct export *export, const struct measurement *
 		difference += sum[i][0];
 		all += sum[i][1];
 	}
-	return difference / all;
+	return error_ratio(difference, all);
 }
 
 static enum status gltf_prepare(struct export *export, struct error *error)
 {
 	struct measurement own;
-	const enum status status = stand_in_prepare(export, &target, error);
+	const enum status status = substitute_prepare(export, &target, error);
 	if (status)
 		return status;
 	if (export_max(export->model.kd) > 1 || export_max(export->model.ks) > 1)
 		return error_set(error, STATUS_UNSUPPORTED,
 				 "glTF has no factor above 1: kd is up to %.5g, ks up to %.5g",
 				 export_max(export->model.kd), export_max(export->model.ks));
-	if (!export->stand_in)
+	if (!export->substitute)
 		snprintf(export->why, sizeof export->why, "approximate: the model's own parameters, but");
 	const size_t used = strlen(export->why);
 	snprintf(export->why + used, sizeof export->why - used,
-		 "%s glTF takes what the surface reflects from the diffuse part", export->stand_in ? ", and" : "");
-	const struct measurement *measurement = stand_in_samples(&export->source, &own);
+		 "%s glTF takes what the surface reflects from the diffuse part", export->substitute ? ", and" : "");
+	const struct measurement *measurement = substitute_measurement(&export->source, &own);
 	if (!measurement)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	const size_t told = strlen(export->cost);
-	snprintf(export->cost + told, sizeof export->cost - told, "%serror of what a glTF viewer shows %.5g%s",
-		 told ? "; " : "", gltf_error(export, measurement),
-		 told || export->source.measurement ? "" : " (against a table of the model itself)");
+	const size_t written = strlen(export->cost);
+	snprintf(export->cost + written, sizeof export->cost - written, "%serror of what a glTF viewer shows %.5g%s",
+		 written ? "; " : "", gltf_error(export, measurement),
+		 written || export->source.measurement ? "" : " (against a table of the model itself)");
 	measurement_free(&own);
 	return STATUS_OK;
 }

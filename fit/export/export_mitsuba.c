@@ -5,7 +5,7 @@
  * says every model with max kd + max ks <= 1. A conductor with k = 0 is the exact dielectric reflectance; without eta and
  * k it is a mirror, F = 1. */
 #include "fit/export/export_format.h"
-#include "fit/export/stand_in.h"
+#include "fit/export/substitute.h"
 #include "fit/results/csv_number.h"
 
 static const struct target target = {
@@ -20,13 +20,13 @@ static const struct target target = {
 
 static enum status mitsuba_prepare(struct export *export, struct error *error)
 {
-	const enum status status = stand_in_prepare(export, &target, error);
+	const enum status status = substitute_prepare(export, &target, error);
 	if (status)
 		return status;
 	if (export_max(export->model.kd) > 1)
 		return error_set(error, STATUS_UNSUPPORTED, "Mitsuba 3 has no reflectance above 1: kd is up to %.5g",
 				 export_max(export->model.kd));
-	if (export->stand_in)
+	if (export->substitute)
 		return STATUS_OK;
 	if (export_max(export->model.ks) > 0 && isinf(export->model.ndf.gamma)) {
 		snprintf(export->why, sizeof export->why,
@@ -105,7 +105,7 @@ static enum status mitsuba_write(const struct export *export, FILE *file, struct
 
 static bool replaces(const struct cook_torrance *model)
 {
-	return stand_in_needed(&target, model, NULL) || export_max(model->kd) + export_max(model->ks) > 1;
+	return substitute_needed(&target, model, NULL) || export_max(model->kd) + export_max(model->ks) > 1;
 }
 
 const struct export_target export_mitsuba = {

@@ -4,7 +4,7 @@
  *     kd = (1 - w) reflectance,  ks = w.
  * The conductor is F D G / (4 cos_i cos_o) of GGX with the height-correlated G; its eta and k are spectra, here flat. */
 #include "fit/export/export_format.h"
-#include "fit/export/stand_in.h"
+#include "fit/export/substitute.h"
 #include "fit/results/csv_number.h"
 
 static const struct target target = {
@@ -20,13 +20,13 @@ static const struct target target = {
 /* With w = ks the diffuse reflectance kd / (1 - w) has to be at most 1, and without kd the rest reflects nothing. */
 static enum status pbrt_prepare(struct export *export, struct error *error)
 {
-	const enum status status = stand_in_prepare(export, &target, error);
+	const enum status status = substitute_prepare(export, &target, error);
 	if (status)
 		return status;
 	if (export_max(export->model.kd) > 1)
 		return error_set(error, STATUS_UNSUPPORTED, "pbrt-v4 has no reflectance above 1: kd is up to %.5g",
 				 export_max(export->model.kd));
-	if (export->stand_in)
+	if (export->substitute)
 		return STATUS_OK;
 	if (!(export_max(export->model.ks) > 0))
 		return export_as_it_is(export, "the model itself");
@@ -80,7 +80,7 @@ static enum status pbrt_write(const struct export *export, FILE *file, struct er
 
 static bool replaces(const struct cook_torrance *model)
 {
-	return stand_in_needed(&target, model, NULL) || export_max(model->kd) + export_max(model->ks) > 1;
+	return substitute_needed(&target, model, NULL) || export_max(model->kd) + export_max(model->ks) > 1;
 }
 
 const struct export_target export_pbrt = {

@@ -2,37 +2,13 @@
 #include "fit/export/gray_specular.h"
 #include "fit/error/entries.h"
 #include "fit/error/sample_set.h"
+#include "fit/error/weighted_median.h"
 
 #include <stdlib.h>
 
-/* What the diffuse term would have to be at an entry, and how much the entry counts. */
-struct wanted {
-	float kd, weight;
-};
-
-static int by_kd(const void *a, const void *b)
-{
-	const float x = ((const struct wanted *)a)->kd, y = ((const struct wanted *)b)->kd;
-	return (x > y) - (x < y);
-}
-
-static double weighted_median(struct wanted *wanted, size_t n)
-{
-	double all = 0, sum = 0;
-	qsort(wanted, n, sizeof *wanted, by_kd);
-	for (size_t i = 0; i < n; i++)
-		all += (double)wanted[i].weight;
-	for (size_t i = 0; i < n; i++) {
-		sum += (double)wanted[i].weight;
-		if (2 * sum >= all)
-			return (double)wanted[i].kd;
-	}
-	return 0;
-}
-
-/* The lobe and the weight at each entry that takes part, as lobe = kd in *wanted; at[] says which entries. */
-static size_t look(const struct measurement *measurement, const struct fit_options *fit,
-		   const struct cook_torrance *model, struct wanted *wanted, size_t *at)
+/* The lobe and the weight at each entry that takes part, the lobe as the value of *wanted; at[] says which entries. */
+static size_t lobe_and_weight(const struct measurement *measurement, const struct fit_options *fit,
+			      const struct cook_torrance *model, struct wish *wanted, size_t *at)
 {
 	const struct entries entries = entries_make(fit->criterion.bins, measurement->n_phi_d);
 	const double min_cos = max_theta_cos(fit->criterion.max_theta);
@@ -46,8 +22,8 @@ static size_t look(const struct measurement *measurement, const struct fit_optio
 				entries_dirs(&entries, i, j, k, &wi, &wo);
 				if (!entry_in_range(wi, wo, min_cos))
 					continue;
-				wanted[n] = (struct wanted){(float)cook_torrance_lobe(model, wi, wo),
-							    (float)weight_at(fit->criterion.weight, i, j, wi.z, wo.z)};
+				wanted[n] = (struct wish){(float)cook_torrance_lobe(model, wi, wo),
+							  (float)weight_at(fit->criterion.weight, i, j, wi.z, wo.z)};
 				at[n++] = entry;
 			}
 	return n;
@@ -57,18 +33,18 @@ enum status gray_specular(const struct measurement *measurement, const struct fi
 			  struct cook_torrance *model)
 {
 	const double ks = (model->ks[0] + model->ks[1] + model->ks[2]) / 3;
-	struct wanted *lobe = calloc(measurement_count(measurement), sizeof *lobe);
-	struct wanted *wanted = calloc(measurement_count(measurement), sizeof *wanted);
+	struct wish *lobe = calloc(measurement_count(measurement), sizeof *lobe);
+	struct wish *wanted = calloc(measurement_count(measurement), sizeof *wanted);
 	size_t *at = calloc(measurement_count(measurement), sizeof *at);
 	const bool ready = lobe && wanted && at;
-	const size_t n = ready ? look(measurement, fit, model, lobe, at) : 0;
+	const size_t n = ready ? lobe_and_weight(measurement, fit, model, lobe, at) : 0;
 	for (int c = 0; c < MERL_CHANNELS && ready; c++) {
 		for (size_t i = 0; i < n; i++) {
-			const double rest = (double)measurement->value[c][at[i]] - ks * (double)lobe[i].kd;
-			wanted[i] = (struct wanted){(float)(M_PI * rest), lobe[i].weight};
+			const double rest = (double)measurement->value[c][at[i]] - ks * (double)lobe[i].value;
+			wanted[i] = (struct wish){(float)(M_PI * rest), lobe[i].weight};
 		}
 		model->ks[c] = ks;
-		model->kd[c] = fmin(fmax(weighted_median(wanted, n), 0), fmax(1 - ks, 0));
+		model->kd[c] = fmin(weighted_median(wanted, n, 0), fmax(1 - ks, 0));
 	}
 	free(lobe);
 	free(wanted);

@@ -56,7 +56,7 @@ double lambda_table_at(const struct lambda_table *table, double mu)
 	return sum * a;
 }
 
-/* The largest relative error of G1 at two places between each pair of nodes, and at as many below them. */
+/* The largest relative error of G1 at two points between each pair of nodes, and at as many below them. */
 static double measure(const struct lambda_table *table, const struct ndf *ndf)
 {
 	double worst = 0;

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/export/model_json.h"
+#include "data_readers/text_file.h"
 #include "data_readers/text_quote.h"
-#include "fit/export/json.h"
 
+#include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { FILE_SIZE_MAX = 64 << 20 };
 
 /* A member that is not as it should be. */
 static enum status bad(const char *name, const char *expected, struct error *error)
@@ -12,50 +15,49 @@ static enum status bad(const char *name, const char *expected, struct error *err
 	return error_set(error, STATUS_FORMAT, "the member \"%s\" should be %s", name, expected);
 }
 
-static const char *text_of(const struct json *json, const char *name)
+static const char *text_of(const json_t *json, const char *name)
 {
-	const struct json *member = json_member(json, name);
-	return member && member->type == JSON_STRING ? member->text : "";
+	const char *text = json_string_value(json_object_get(json, name));
+	return text ? text : "";
 }
 
 /* A number, or "inf"; NaN for anything else. */
-static double number_of(const struct json *value)
+static double number_of(const json_t *value)
 {
-	if (value && value->type == JSON_NUMBER)
-		return value->number;
-	return value && value->type == JSON_STRING && !strcmp(value->text, "inf") ? INFINITY : NAN;
+	if (json_is_number(value))
+		return json_number_value(value);
+	return json_is_string(value) && !strcmp(json_string_value(value), "inf") ? INFINITY : NAN;
 }
 
 /* The numbers of an array, newly allocated; NULL: none, or out of memory. */
-static double *numbers_of(const struct json *array, size_t *n)
+static double *numbers_of(const json_t *array, size_t *n)
 {
-	if (!array || array->type != JSON_ARRAY || !array->n)
-		return NULL;
-	double *x = malloc(array->n * sizeof *x);
-	for (size_t i = 0; x && i < array->n; i++)
-		x[i] = number_of(&array->item[i]);
-	*n = array->n;
+	*n = json_array_size(array);
+	double *x = *n ? malloc(*n * sizeof *x) : NULL;
+	for (size_t i = 0; x && i < *n; i++)
+		x[i] = number_of(json_array_get(array, i));
 	return x;
 }
 
-static enum status read_rgb(const struct json *json, const char *name, double rgb[3], struct error *error)
+static enum status read_rgb(const json_t *json, const char *name, double rgb[3], struct error *error)
 {
-	const struct json *array = json_member(json, name);
-	if (!array || array->type != JSON_ARRAY || array->n != 3)
+	const json_t *array = json_object_get(json, name);
+	if (json_array_size(array) != 3)
 		return bad(name, "three numbers", error);
 	for (int c = 0; c < 3; c++) {
-		rgb[c] = number_of(&array->item[c]);
+		rgb[c] = number_of(json_array_get(array, (size_t)c));
 		if (!(rgb[c] >= 0 && rgb[c] <= FIT_FACTOR_MAX))
 			return bad(name, "three numbers from 0 to 1e6", error);
 	}
 	return STATUS_OK;
 }
 
-static enum status read_nodes(const struct json *json, struct model_json *read, struct error *error)
+static enum status read_nodes(const json_t *json, struct model_json *read, struct error *error)
 {
-	const struct json *nodes = json_member(json, "nodes");
+	const json_t *nodes = json_object_get(json, "nodes");
 	size_t n = 0, n_D = 0;
-	double *theta = numbers_of(json_member(nodes, "theta"), &n), *D = numbers_of(json_member(nodes, "D"), &n_D);
+	double *theta = numbers_of(json_object_get(nodes, "theta"), &n),
+	       *D = numbers_of(json_object_get(nodes, "D"), &n_D);
 	enum status status = STATUS_DOMAIN;
 	read->pwl = calloc(1, sizeof *read->pwl);
 	if (!read->pwl)
@@ -72,10 +74,10 @@ static enum status read_nodes(const struct json *json, struct model_json *read, 
 	return STATUS_OK;
 }
 
-static enum status read_ndf(const struct json *json, struct model_json *read, struct error *error)
+static enum status read_ndf(const json_t *json, struct model_json *read, struct error *error)
 {
 	const struct ndf_class *class = ndf_find(text_of(json, "ndf"));
-	const struct json *parameters = json_member(json, "parameters");
+	const json_t *parameters = json_object_get(json, "parameters");
 	double value[NDF_PARAMS_MAX];
 	enum lambda_form form;
 	if (!class)
@@ -85,7 +87,7 @@ static enum status read_ndf(const struct json *json, struct model_json *read, st
 	if (ndf_is_tabulated(class))
 		return read_nodes(json, read, error);
 	for (int i = 0; ndf_param_at(class, i); i++)
-		value[i] = number_of(json_member(parameters, ndf_param_at(class, i)->name));
+		value[i] = number_of(json_object_get(parameters, ndf_param_at(class, i)->name));
 	if (ndf_init_params(&read->model.ndf, class, value))
 		return bad("parameters", "those of the distribution", error);
 	if (form != LAMBDA_EXACT && ndf_set_lambda_form(&read->model.ndf, form))
@@ -93,16 +95,15 @@ static enum status read_ndf(const struct json *json, struct model_json *read, st
 	return STATUS_OK;
 }
 
-static enum status read_terms(const struct json *json, struct model_json *read, struct fit_options *fit,
-			      struct error *error)
+static enum status read_terms(const json_t *json, struct model_json *read, struct fit_options *fit, struct error *error)
 {
 	struct cook_torrance *model = &read->model;
 	if (gaf_find(text_of(json, "gaf"), &model->gaf))
 		return bad("gaf", "the name of a masking-shadowing term", error);
 	if (fresnel_find(text_of(json, "fresnel"), &model->fresnel))
 		return bad("fresnel", "the name of a Fresnel term", error);
-	model->n = number_of(json_member(json, "ior"));
-	model->k = number_of(json_member(json, "k"));
+	model->n = number_of(json_object_get(json, "ior"));
+	model->k = number_of(json_object_get(json, "k"));
 	if (!(model->n > 0 && model->n <= 1e75))
 		return bad("ior", "a positive number", error);
 	if (!(model->k >= 0 && model->k <= 1e75))
@@ -119,12 +120,12 @@ static bool copy(const char *text, char **copied)
 	return !*text || *copied;
 }
 
-static enum status read_fitted(const struct json *json, struct model_json *read, struct fit_options *fit,
+static enum status read_fitted(const json_t *json, struct model_json *read, struct fit_options *fit,
 			       struct error *error)
 {
-	const struct json *fitted = json_member(json, "fitted");
-	fit->criterion.max_theta = number_of(json_member(fitted, "max_theta"));
-	read->error = number_of(json_member(fitted, "error"));
+	const json_t *fitted = json_object_get(json, "fitted");
+	fit->criterion.max_theta = number_of(json_object_get(fitted, "max_theta"));
+	read->error = number_of(json_object_get(fitted, "error"));
 	if (weight_find(text_of(fitted, "weight"), &fit->criterion.weight) ||
 	    bins_find(text_of(fitted, "bins"), &fit->criterion.bins) ||
 	    !(fit->criterion.max_theta > 0 && fit->criterion.max_theta <= 90))
@@ -134,8 +135,7 @@ static enum status read_fitted(const struct json *json, struct model_json *read,
 	return STATUS_OK;
 }
 
-static enum status read_model(const struct json *json, struct model_json *read, struct fit_options *fit,
-			      struct error *error)
+static enum status read_model(const json_t *json, struct model_json *read, struct fit_options *fit, struct error *error)
 {
 	if (strcmp(text_of(json, "format"), "stdfit-model-1") != 0)
 		return bad("format", "\"stdfit-model-1\"", error);
@@ -149,18 +149,50 @@ static enum status read_model(const struct json *json, struct model_json *read, 
 	return status ? status : read_fitted(json, read, fit, error);
 }
 
+/* The tree of a text; NULL, and the reason. */
+static json_t *parse(const char *text, size_t size, enum status *status, struct error *why)
+{
+	json_error_t error;
+	char quoted[TEXT_QUOTE_SIZE];
+	json_t *tree = json_loadb(text, size, JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL, &error);
+	if (tree)
+		return tree;
+	/* Of what has run out while an array or an object grew, no text is given. */
+	if (json_error_code(&error) == json_error_out_of_memory || !*error.text) {
+		*status = error_set(why, STATUS_NO_MEMORY, "out of memory");
+		return NULL;
+	}
+	text_quote(error.text, quoted, sizeof quoted);
+	*status = error_set(why, STATUS_FORMAT, "line %d, column %d: %s", error.line, error.column, quoted);
+	return NULL;
+}
+
+static enum status read_tree(const char *path, json_t **tree, struct error *error)
+{
+	char *text, name[TEXT_QUOTE_SIZE];
+	struct error why;
+	size_t size;
+	enum status status = text_file_read(path, "a model", FILE_SIZE_MAX, &text, &size, &why);
+	*tree = status == STATUS_OK ? parse(text, size, &status, &why) : NULL;
+	free(text);
+	if (status == STATUS_OK)
+		return STATUS_OK;
+	text_quote(path, name, sizeof name);
+	return error_set(error, status, "cannot read '%s': %.200s", name, why.text);
+}
+
 enum status model_json_read(const char *path, struct model_json *json, struct fit_options *fit, struct error *error)
 {
-	struct json tree;
+	json_t *tree;
 	struct error why;
 	char name[TEXT_QUOTE_SIZE];
 	*json = (struct model_json){0};
-	enum status status = json_read(path, &tree, error);
-	if (status)
+	enum status status = read_tree(path, &tree, error);
+	if (status != STATUS_OK)
 		return status;
-	status = read_model(&tree, json, fit, &why);
-	json_free(&tree);
-	if (!status)
+	status = read_model(tree, json, fit, &why);
+	json_decref(tree);
+	if (status == STATUS_OK)
 		return STATUS_OK;
 	model_json_free(json);
 	text_quote(path, name, sizeof name);

@@ -27,8 +27,9 @@ struct model_json {
 	double error; /* NaN: not known */
 };
 
-/* model_json_read - reads `path`; weight, bins, max_theta, gaf and fresnel go to *fit, too.
- * Errors: STATUS_IO, STATUS_NO_MEMORY, STATUS_FORMAT (which member, what was expected). *json holds nothing then. */
+/* model_json_read - reads `path`, of at most 64 MB; weight, bins, max_theta, gaf and fresnel go to *fit, too.
+ * Errors: STATUS_IO, STATUS_NO_MEMORY, STATUS_FORMAT (the line of a syntax error, which includes a member given twice,
+ * a number beyond a double's range and nesting beyond 2048; or which member, what was expected). *json holds nothing then. */
 MUST_CHECK enum status model_json_read(const char *path, struct model_json *json, struct fit_options *fit,
 				       struct error *error);
 void model_json_free(struct model_json *json);

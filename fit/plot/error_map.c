@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/plot/error_map.h"
-#include <math.h>
+#include "fit/error/error_sum.h"
 
 enum status error_map_make(const struct measurement *measurement, const struct cook_torrance *model,
 			   const struct fit_options *options, struct metrics_row row[MERL_ROWS])
@@ -20,5 +20,5 @@ double error_map_error(const struct metrics_row *row)
 {
 	if (row->samples == 0)
 		return NAN;
-	return row->difference > 0 ? row->difference / row->measured : 0;
+	return row->difference > 0 ? error_ratio(row->difference, row->measured) : 0;
 }

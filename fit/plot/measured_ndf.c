@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 /* Bounds of what counts, see measured_ndf.h. */
-enum { THETA_D_MOST = 30, TAIL_NODES = 40 };
+enum { THETA_D_MAX = 30, TAIL_NODES = 40 };
 static const double steepest = 80 * M_PI / 180;
 
 struct reading {
@@ -23,16 +23,12 @@ struct reading {
 static double lobe_per_D(const struct reading *r, struct vec3 wi, struct vec3 wo, double F)
 {
 	const struct cook_torrance *model = r->model;
-	double G;
+	const double cosines = wi.z * wo.z;
 
-	if (model->gaf == GAF_V_GROOVE) {
-		G = gaf_G(GAF_V_GROOVE, &model->ndf, wi, wo);
-	} else {
-		const double i = masking_at(&r->masking, masking_q(wi)), o = masking_at(&r->masking, masking_q(wo));
-
-		G = model->gaf == GAF_UNCORRELATED ? i * o : 1 / (1 / i + 1 / o - 1);
-	}
-	return F * G / (4 * wi.z * wo.z);
+	if (model->gaf == GAF_V_GROOVE)
+		return cook_torrance_from_G(F, gaf_G(GAF_V_GROOVE, &model->ndf, wi, wo), cosines);
+	return cook_torrance_from_G1(model->gaf, F, masking_at(&r->masking, masking_q(wi)),
+				     masking_at(&r->masking, masking_q(wo)), cosines);
 }
 
 /* The wishes of entry (i, j, k), one a channel; returns how many. */
@@ -61,7 +57,7 @@ static double read_row(const struct reading *r, int i)
 {
 	size_t n = 0;
 
-	for (int j = 0; j <= THETA_D_MOST; j++) {
+	for (int j = 0; j <= THETA_D_MAX; j++) {
 		const double F = fresnel_F(r->model->fresnel, r->entries.theta[j].cos_d, r->model->n, r->model->k);
 
 		for (int k = 0; k < r->measurement->n_phi_d; k++)
@@ -77,10 +73,10 @@ static enum status read_rows(const struct measurement *measurement, const struct
 			    .model = model,
 			    .entries = entries_make(bins, measurement->n_phi_d),
 			    .min_cos = cos(steepest)};
-	const size_t most = (size_t)(THETA_D_MOST + 1) * (size_t)measurement->n_phi_d * MERL_CHANNELS;
+	const size_t n_max = (size_t)(THETA_D_MAX + 1) * (size_t)measurement->n_phi_d * MERL_CHANNELS;
 	const int32_t q_min = masking_q((struct vec3){sin(steepest), 0, cos(steepest)}) - 1;
 
-	r.wish = malloc(most * sizeof *r.wish);
+	r.wish = malloc(n_max * sizeof *r.wish);
 	const enum status status = r.wish ? masking_init(&r.masking, q_min, MASKING_FINE) : STATUS_NO_MEMORY;
 	if (status == STATUS_OK && model->gaf != GAF_V_GROOVE)
 		masking_fill(&r.masking, &model->ndf);

@@ -52,11 +52,6 @@ void colour_lab(const double rgb[3], double lab[3])
 	lab[2] = 200.0 * (y - z);
 }
 
-double delta_e_76(const double p[3], const double q[3])
-{
-	return hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
-}
-
 static double degrees(double radians)
 {
 	return radians * (180.0 / M_PI);

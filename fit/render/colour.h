@@ -18,8 +18,6 @@ double colour_luminance(const double rgb[3]);
  * 1e-12. */
 void colour_lab(const double rgb[3], double lab[3]);
 
-/* delta_e_76 - the distance of two colours in CIELAB, CIE 1976. */
-double delta_e_76(const double lab_1[3], const double lab_2[3]);
 /* delta_e_2000 - CIEDE2000 with unit weights [CIE 142; Sharma, Wu and Dalal 2005]: 1 is about what one can just see.
  * Symmetric; 0 for equal colours. Jumps a little (below 1 %) where two hues are opposite, as the formula does. */
 double delta_e_2000(const double lab_1[3], const double lab_2[3]);

@@ -7,16 +7,16 @@
 /* So that nothing overflows a float, made 2^20 times as bright. */
 #define RADIANCE_MAX 1e30
 
-/* A place on a map, in texels from its upper left corner. */
-struct place {
+/* A point on a map, in texels from its upper left corner. */
+struct point {
 	double x, y;
 };
 
-static struct place place_of(const struct image *map, struct vec3 to)
+static struct point point_of(const struct image *map, struct vec3 to)
 {
 	const double u = 0.5 + atan2(to.x, -to.z) / (2 * M_PI);
 	const double v = acos(fmax(-1, fmin(to.y, 1))) / M_PI;
-	return (struct place){u * map->width, v * map->height};
+	return (struct point){u * map->width, v * map->height};
 }
 
 static struct vec3 direction_at(double cos_up, double longitude)
@@ -38,7 +38,7 @@ static const float *texel(const struct image *map, int x, int y)
 	return image_at(map, (x + map->width) % map->width, row);
 }
 
-static void interpolate(const struct image *map, struct place at, double rgb[3])
+static void interpolate(const struct image *map, struct point at, double rgb[3])
 {
 	const int x = (int)floor(at.x - 0.5), y = (int)floor(at.y - 0.5);
 	const double right = at.x - 0.5 - x, down = at.y - 0.5 - y;
@@ -183,7 +183,7 @@ static int clamp_index(double at, int n)
 
 struct arriving environment_at(const struct environment *e, struct vec3 to)
 {
-	const struct place at = place_of(&e->map, to);
+	const struct point at = point_of(&e->map, to);
 	const int x = clamp_index(at.x, e->map.width), y = clamp_index(at.y, e->map.height);
 	const double *cdf = e->cell_cdf + (size_t)y * (size_t)(e->map.width + 1);
 	struct arriving light = {.pdf = (e->row_cdf[y + 1] - e->row_cdf[y]) * (cdf[x + 1] - cdf[x]) /

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* PFM: "PF" or "Pf", width, height, a scale factor that is negative for little-endian, one white space, then float32
- * row by row from the bottom up. */
+ * row by row from the bottom up. By hand: a header line and floats, less than calling a library takes. */
 #include "data_readers/atomic_file.h"
 #include "fit/render/image_decode.h"
 #include <endian.h>

@@ -42,7 +42,7 @@ void measured_free(struct measured *m)
 	*m = (struct measured){0};
 }
 
-/* The entries on either side of a place, and the share of the second. */
+/* The entries on either side of a point, and the share of the second. */
 struct bracket {
 	int low, high;
 	double share;
@@ -68,11 +68,9 @@ void measured_f(const struct measured *m, struct vec3 wi, struct vec3 wo, double
 	f[0] = f[1] = f[2] = 0;
 	if (!(wi.z > 0 && wo.z > 0))
 		return;
-	const struct halfdiff angles = halfdiff_from_dirs(wi, wo);
-	const double degrees = 180 / M_PI, offset = m->bins == BINS_CENTRE ? 0.5 : 0;
-	const struct bracket h = bracket_clamped(sqrt(90 * degrees * angles.theta_h) - offset, MERL_THETA_H);
-	const struct bracket d = bracket_clamped(degrees * angles.theta_d - offset, MERL_THETA_D);
-	const struct bracket phi = bracket_around(degrees * angles.phi_d - offset, m->n_phi_d);
+	const struct bins_indices at = bins_indices(m->bins, halfdiff_from_dirs(wi, wo));
+	const struct bracket h = bracket_clamped(at.i, MERL_THETA_H), d = bracket_clamped(at.j, MERL_THETA_D);
+	const struct bracket phi = bracket_around(at.k, m->n_phi_d);
 	for (int corner = 0; corner < 8; corner++) {
 		const double weight = (corner & 1 ? h.share : 1 - h.share) * (corner & 2 ? d.share : 1 - d.share) *
 				      (corner & 4 ? phi.share : 1 - phi.share);

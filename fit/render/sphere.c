@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The numbers of a sample, in pairs: place in the pixel, light, surface. */
+/* The numbers of a sample, in pairs: position in the pixel, light, surface. */
 enum { AT_PIXEL = 0, AT_LIGHT = 2, AT_SURFACE = 4, DIMENSIONS = 6 };
 
 #define MARGIN 0.02

@@ -45,14 +45,14 @@ struct view surface_view(const struct surface *s, struct vec3 wo)
 	return view;
 }
 
-static double masking_G(const struct surface *s, const struct view *view, struct vec3 wi)
+/* The specular term for ks = 1. */
+static double specular_f(const struct surface *s, const struct view *view, struct vec3 wi, double DF)
 {
-	if (s->model->gaf == GAF_V_GROOVE)
-		return gaf_G(GAF_V_GROOVE, &s->model->ndf, wi, view->wo);
-	const double G1 = masking_at(&s->masking, masking_q(wi));
-	if (s->model->gaf == GAF_UNCORRELATED)
-		return G1 * view->G1;
-	return G1 > 0 && view->G1 > 0 ? 1 / (1 / G1 + 1 / view->G1 - 1) : 0;
+	const enum gaf gaf = s->model->gaf;
+	const double cosines = wi.z * view->wo.z;
+	if (gaf == GAF_V_GROOVE)
+		return cook_torrance_from_G(DF, gaf_G(gaf, &s->model->ndf, wi, view->wo), cosines);
+	return cook_torrance_from_G1(gaf, DF, masking_at(&s->masking, masking_q(wi)), view->G1, cosines);
 }
 
 /* What the lobe is worth in one direction. */
@@ -70,8 +70,7 @@ static struct lobe lobe_at(const struct surface *s, const struct view *view, str
 	const double D = ndf_D(&model->ndf, m);
 	struct lobe lobe = {0, s->visible ? D * view->G1_exact / (4 * view->wo.z) : D * m.z / (4 * cos_d)};
 	if (!s->measured)
-		lobe.f = fresnel_F(model->fresnel, cos_d, model->n, model->k) * D * masking_G(s, view, wi) /
-			 (4 * wi.z * view->wo.z);
+		lobe.f = specular_f(s, view, wi, fresnel_F(model->fresnel, cos_d, model->n, model->k) * D);
 	return lobe;
 }
 

@@ -159,13 +159,13 @@ static void set_nodes(const struct fit_options *options, const struct ndf *ndf, 
 static void set_ndf(struct row *row, const struct ndf *ndf, char params[PARAMS_SIZE])
 {
 	for (int i = 0; ndf_param_at(ndf->class, i); i++) {
-		const char *name = ndf_param_at(ndf->class, i)->name;
-		if (!strcmp(name, "sigma"))
+		const struct ndf_param *param = ndf_param_at(ndf->class, i);
+		if (param->role == NDF_ROLE_SIGMA)
 			set_number(row, RESULT_SIGMA, ndf->param[i]);
-		else if (!strcmp(name, "gamma"))
+		else if (param->role == NDF_ROLE_GAMMA)
 			set_number(row, RESULT_GAMMA, ndf->param[i]);
 		else
-			add_param(params, name, ndf->param[i]);
+			add_param(params, param->name, ndf->param[i]);
 	}
 	if (!ndf_has_gamma(ndf->class) && !ndf_is_tabulated(ndf->class))
 		set_number(row, RESULT_GAMMA, ndf->gamma);
@@ -367,12 +367,12 @@ static enum status result_ndf(char *const *row, const struct ndf_class *class, s
 	enum lambda_form form;
 	*wrong = RESULT_SIGMA;
 	for (int i = 0; ndf_param_at(class, i); i++) {
-		const char *name = ndf_param_at(class, i)->name;
-		if (!strcmp(name, "sigma")) {
+		const struct ndf_param *param = ndf_param_at(class, i);
+		if (param->role == NDF_ROLE_SIGMA) {
 			value[i] = number_or(row, RESULT_SIGMA, 1);
 			if (is_missing(row, RESULT_SIGMA) || !(value[i] >= NDF_SIGMA_MIN && value[i] <= NDF_SIGMA_MAX))
 				return STATUS_DOMAIN;
-		} else if (!strcmp(name, "gamma")) {
+		} else if (param->role == NDF_ROLE_GAMMA) {
 			*wrong = RESULT_GAMMA;
 			value[i] = number_or(row, RESULT_GAMMA, 2.5);
 			if (is_missing(row, RESULT_GAMMA))
@@ -380,7 +380,7 @@ static enum status result_ndf(char *const *row, const struct ndf_class *class, s
 		} else {
 			*wrong = RESULT_PARAMS;
 			/* Without a specular term there are none. */
-			if (!result_param(row[RESULT_PARAMS], name, &value[i])) {
+			if (!result_param(row[RESULT_PARAMS], param->name, &value[i])) {
 				if (*row[RESULT_KS_R])
 					return STATUS_DOMAIN;
 				value[i] = 1;

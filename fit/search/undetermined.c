@@ -67,7 +67,7 @@ static struct space fixed_space(const struct refit_context *q, const struct fixe
 static void fix_objective(struct objective *o, const struct fixed *fixed)
 {
 	if (fixed->dim < 0)
-		objective_pin(o, fixed->channel, fixed->specular, fixed->value);
+		objective_fix(o, fixed->channel, fixed->specular, fixed->value);
 }
 
 static void count(void *user, const struct shape *shape, const struct linear *linear)
@@ -269,7 +269,7 @@ static enum status reaches_both_ends(struct refit_context *q, int channel, bool 
 
 	*reached = status == STATUS_OK;
 	for (int end = 0; end < 2 && *reached; end++) {
-		objective_pin(&o, channel, specular,
+		objective_fix(&o, channel, specular,
 			      (int)specular == end ? objective_upper_bound(q->options, specular) : 0);
 		*reached = objective_eval(&o, &q->best, 1e-7, false, &linear) <= limit_of(SEARCH_LEVELS - 1, q->error);
 		q->evaluations++;
@@ -328,10 +328,10 @@ static void note_increase(struct refit_context *q, struct objective *o, const st
 {
 	struct linear free, white;
 
-	objective_unpin(o);
+	objective_unfix(o);
 	objective_eval(o, shape, 1e-4, false, &free);
 	for (int c = 0; c < MERL_CHANNELS; c++)
-		objective_pin(o, c, false, objective_upper_bound(q->options, false));
+		objective_fix(o, c, false, objective_upper_bound(q->options, false));
 	objective_eval(o, shape, 1e-4, false, &white);
 	q->evaluations += 2;
 	for (int c = 0; c < MERL_CHANNELS; c++) {
@@ -353,7 +353,7 @@ static enum status evaluate_coarse(struct refit_context *q)
 		return status;
 	q->coarse = objective_eval(&o, &q->best, 1e-5, false, &linear);
 	for (int c = 0; c < MERL_CHANNELS; c++) {
-		objective_pin(&o, c, true, 0);
+		objective_fix(&o, c, true, 0);
 		q->increase[0][c] = q->increase[1][c] = INFINITY;
 	}
 	q->lambert = objective_eval(&o, &q->best, 1e-5, false, &linear);
@@ -382,7 +382,7 @@ static enum status can_do_without_lobe(struct refit_context *q, bool *can)
 	if (status != STATUS_OK)
 		return status;
 	for (int c = 0; c < MERL_CHANNELS; c++)
-		objective_pin(&o, c, true, 0);
+		objective_fix(&o, c, true, 0);
 	*can = objective_eval(&o, &q->best, 1e-7, false, &linear) <= limit_of(SEARCH_LEVELS - 1, q->error);
 	objective_free(&o);
 	return status;

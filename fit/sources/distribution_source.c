@@ -52,17 +52,17 @@ static void take(const struct source_model *model, struct described *item)
 						  .params = item->params,
 						  .lambda = lambda_form_name(ndf->lambda_form)};
 	for (int i = 0; ndf_param_at(ndf->class, i); i++) {
-		const char *name = ndf_param_at(ndf->class, i)->name;
+		const struct ndf_param *param = ndf_param_at(ndf->class, i);
 		char number[CSV_NUMBER_SIZE];
 		const size_t used = strlen(item->params);
 		csv_number(number, ndf->param[i]);
-		if (!strcmp(name, "sigma"))
+		if (param->role == NDF_ROLE_SIGMA)
 			strcpy(item->sigma, number);
-		else if (!strcmp(name, "gamma"))
+		else if (param->role == NDF_ROLE_GAMMA)
 			strcpy(item->gamma, number);
 		else
-			snprintf(item->params + used, sizeof item->params - used, "%s%s=%s", used ? ";" : "", name,
-				 number);
+			snprintf(item->params + used, sizeof item->params - used, "%s%s=%s", used ? ";" : "",
+				 param->name, number);
 	}
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "fit/export/stand_in.h"
+#include "fit/export/substitute.h"
 #include "data_readers/text_quote.h"
 #include "fit/error/model_table.h"
 #include "fit/export/export_format.h"
@@ -24,21 +24,10 @@ static void add_text(char text[EXPORT_TEXT], const char *format, ...)
 	va_end(list);
 }
 
-/* GGX or Beckmann where the distribution is one of them under another name; false where it is neither. */
-static bool plain_ndf(const struct ndf *ndf, struct ndf *plain)
+/* Of a plain distribution. */
+static bool is_beckmann(const struct ndf *plain)
 {
-	const char *name = ndf_name(ndf->class);
-	const bool ggx = ndf->gamma == 2.0 && strcmp(name, "low") != 0;
-	const bool beckmann = isinf(ndf->gamma);
-	if ((!ggx && !beckmann) || ndf->lambda_form == LAMBDA_RATIONAL)
-		return false;
-	const double sigma = ndf->sigma_x / ndf->stretch;
-	return ndf_init(plain, ndf_find(ggx ? "ggx" : "beckmann"), sigma, sigma, NAN) == STATUS_OK;
-}
-
-static bool is_beckmann(const struct ndf *ndf)
-{
-	return strcmp(ndf_name(ndf->class), "beckmann") == 0;
+	return isinf(plain->gamma);
 }
 
 /* What of the lobe has no counterpart. */
@@ -52,13 +41,13 @@ static void describe_ndf(const struct ndf *ndf, char why[EXPORT_TEXT])
 	add_text(why, ",");
 }
 
-bool stand_in_needed(const struct target *target, const struct cook_torrance *model, char why[EXPORT_TEXT])
+bool substitute_needed(const struct target *target, const struct cook_torrance *model, char why[EXPORT_TEXT])
 {
 	char text[EXPORT_TEXT] = "";
 	struct ndf plain;
 	if (!(export_max(model->ks) > 0))
 		return false;
-	if (!plain_ndf(&model->ndf, &plain) || (is_beckmann(&plain) && !target->beckmann))
+	if (!ndf_plain(&model->ndf, &plain) || (is_beckmann(&plain) && !target->beckmann))
 		describe_ndf(&model->ndf, text);
 	if (model->gaf != target->gaf)
 		add_text(text, " no %s G,", gaf_name(model->gaf));
@@ -74,7 +63,7 @@ bool stand_in_needed(const struct target *target, const struct cook_torrance *mo
 	return length > 0;
 }
 
-const struct measurement *stand_in_samples(const struct export_source *source, struct measurement *own)
+const struct measurement *substitute_measurement(const struct export_source *source, struct measurement *own)
 {
 	*own = (struct measurement){0};
 	if (source->measurement)
@@ -89,7 +78,7 @@ const struct measurement *stand_in_samples(const struct export_source *source, s
 static void choose_ndfs(const struct target *target, const struct cook_torrance *model, struct fit_options *fit)
 {
 	struct ndf plain;
-	const bool known = plain_ndf(&model->ndf, &plain), beckmann = known && is_beckmann(&plain);
+	const bool known = ndf_plain(&model->ndf, &plain), beckmann = known && is_beckmann(&plain);
 	fit->n_ndf = 0;
 	if (!(target->beckmann && beckmann))
 		fit->ndf[fit->n_ndf++] = ndf_find("ggx");
@@ -209,9 +198,9 @@ static void average_specular(struct cook_torrance *model)
 	model->ks[0] = model->ks[1] = model->ks[2] = (model->ks[0] + model->ks[1] + model->ks[2]) / 3;
 }
 
-/* Fits the stand-in into export->model. *blended: as a blend, which the best fit is not. */
-static enum status fit_stand_in(struct export *export, const struct target *target,
-				const struct measurement *measurement, bool *blended, struct error *error)
+/* Fits the substitute into export->model. *blended: as a blend, which the best fit is not. */
+static enum status fit_substitute(struct export *export, const struct target *target,
+				  const struct measurement *measurement, bool *blended, struct error *error)
 {
 	struct fit_options fit = options_for(target, &export->source);
 	struct fit_context *context = NULL;
@@ -255,7 +244,7 @@ static void name_data(const struct export_source *source, char name[TEXT_QUOTE_S
 			 source->measurement ? "the measurement" : "a table of the model itself");
 }
 
-static enum status tell_cost(struct export *export, const struct measurement *measurement, struct error *error)
+static enum status report_cost(struct export *export, const struct measurement *measurement, struct error *error)
 {
 	const struct fit_options *fit = export->source.fit;
 	double before, after;
@@ -273,11 +262,11 @@ static enum status tell_cost(struct export *export, const struct measurement *me
 }
 
 /* Uses the model as it is, its distribution under the name that the target has for it. */
-static void take(struct export *export)
+static void use_as_it_is(struct export *export)
 {
 	struct ndf plain;
 	export->model = *export->source.model;
-	if (plain_ndf(&export->model.ndf, &plain))
+	if (ndf_plain(&export->model.ndf, &plain))
 		export->model.ndf = plain;
 }
 
@@ -289,31 +278,31 @@ static enum status check_sigma(const struct export *export, const struct target 
 	return error_set(error, STATUS_UNSUPPORTED, "%s takes a roughness of %.5g for a mirror", target->name, sigma);
 }
 
-enum status stand_in_prepare(struct export *export, const struct target *target, struct error *error)
+enum status substitute_prepare(struct export *export, const struct target *target, struct error *error)
 {
 	char lacks[EXPORT_TEXT] = "";
 	const struct cook_torrance *given = export->source.model;
 	struct measurement own;
-	take(export);
+	use_as_it_is(export);
 	if (target->gray && !is_gray(given->ks) && !(export_max(given->kd) > 0))
 		return error_set(error, STATUS_UNSUPPORTED,
 				 "%s has one ks for all channels, and without kd the colour of ks %.5g, %.5g, %.5g "
 				 "would be lost (--gray fits one)",
 				 target->name, given->ks[0], given->ks[1], given->ks[2]);
-	export->stand_in = stand_in_needed(target, given, lacks);
-	if (!export->stand_in && target->blend && !fits_blend(given) && export_max(given->ks) > 0) {
-		export->stand_in = true;
+	export->substitute = substitute_needed(target, given, lacks);
+	if (!export->substitute && target->blend && !fits_blend(given) && export_max(given->ks) > 0) {
+		export->substitute = true;
 		snprintf(lacks, sizeof lacks, " no kd + ks of %.5g, more than 1",
 			 export_max(given->kd) + export_max(given->ks));
 	}
-	if (!export->stand_in)
+	if (!export->substitute)
 		return check_sigma(export, target, error);
-	const struct measurement *measurement = stand_in_samples(&export->source, &own);
+	const struct measurement *measurement = substitute_measurement(&export->source, &own);
 	bool blended = false;
-	enum status status = measurement ? fit_stand_in(export, target, measurement, &blended, error)
+	enum status status = measurement ? fit_substitute(export, target, measurement, &blended, error)
 					 : error_set(error, STATUS_NO_MEMORY, "out of memory");
 	if (!status)
-		status = tell_cost(export, measurement, error);
+		status = report_cost(export, measurement, error);
 	measurement_free(&own);
 	if (!status)
 		status = check_sigma(export, target, error);
