@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Targets: all (default), check, demo, bench, figures, stability, asan, ubsan, tsan, lint, valgrind, compilers, fuzz,
-# killtest, install, uninstall, dist, clean. Those that check or show something install what is missing first.
+# Targets: all (default), check, check-docs, demo, bench, figures, stability, asan, ubsan, tsan, lint, valgrind, compilers,
+# fuzz, killtest, install, uninstall, dist, clean. Those that check or show something install what is missing first.
 VERSION := 0.2.0
 
 CC ?= cc
@@ -170,11 +170,16 @@ demo: setup
 	@$(MAKE) --no-print-directory all
 	@scripts/demo.sh $(BUILD)/stdfit
 
+# The sessions, links and options of README.md and docs/ against the program; sessions of measured tables with MERL=DIR.
+check-docs: setup
+	@$(MAKE) --no-print-directory all
+	@MERL='$(MERL)' scripts/check_docs.sh $(BUILD)/stdfit
+
 clean:
 	rm -rf $(BUILD)
 
 include scripts/install.mk
 
-.PHONY: all setup check run-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo clean
+.PHONY: all setup check check-docs run-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo clean
 
 -include $(lib_objects:.o=.d) $(BUILD)/fit/commands/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))
