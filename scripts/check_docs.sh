@@ -9,9 +9,9 @@
 # output, standard error included. The sessions of a page run in order, in a directory of the page's own. Two numbers with
 # a point or an exponent agree within 1e-3 of themselves or one unit of the last digit printed; all else agrees to the
 # letter, but for white space. A line `...` stands for any lines. A comment on the line above the fence changes this:
-#   <!-- check: merl -->      needs the measured tables: run where MERL=DIR names them (as merl/), else skipped by name
-#   <!-- check: free 8 9 -->  the fields 8 and 9 of each line are times and the like: not compared
-#   <!-- check: within R -->  numbers agree within R of themselves
+#   <!-- check: merl -->       needs the measured tables: run where MERL=DIR names them (as merl/), else skipped by name
+#   <!-- check: free 9 10 -->  the fields 9 and 10 of each line are times and the like: not compared
+#   <!-- check: within R -->   numbers agree within R of themselves
 # Other fences are not run.
 set -eu
 export LC_ALL=C
