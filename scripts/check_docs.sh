@@ -124,7 +124,7 @@ same_output() {
 				while (i < n && mark[i + 1] + 0 > 0)
 					free[mark[++i] + 0]
 	}
-	NR == FNR { want[++wants] = $0; next }
+	FILENAME == ARGV[1] { want[++wants] = $0; next }
 	{ got[++gots] = $0 }
 	END {
 		j = 1
@@ -158,14 +158,15 @@ rewrite_page() {
 		if (!held)
 			return
 		printed = dir "/" n ".printed"
-		if ((getline text <printed) < 0) {
+		lines = 0
+		while ((status = (getline text <printed)) > 0) {
+			sub(/[ \t]+$/, "", text)
+			new[++lines] = text
+		}
+		if (status < 0) { # not run
 			for (i = 1; i <= count; i++)
 				print old[i]
 		} else {
-			lines = 0
-			do
-				{ sub(/[ \t]+$/, "", text); new[++lines] = text }
-			while ((getline text <printed) > 0)
 			close(printed)
 			dots = 0
 			for (i = 1; i <= count; i++)
@@ -207,7 +208,6 @@ check_sessions() {
 			;;
 		esac
 		(cd "$place" && sh "$steps/$i.command") >"$steps/$i.printed" 2>&1 </dev/null || :
-		[ -s "$steps/$i.printed" ] || { [ -z "$update" ] || rm "$steps/$i.printed"; }
 		run=$((run + 1))
 		if [ -z "$update" ] && ! same_output "$steps/$i.expected" "$steps/$i.printed" "$check" >"$work/difference"; then
 			fault "$page:$line: $(head -n 1 "$steps/$i.command")"
