@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Targets: all (default), check, check-long, demo, bench, figures, stability, asan, ubsan, tsan, lint, architecture,
-# valgrind, compilers, fuzz, killtest, install, uninstall, dist, clean. Those that check or show something install what is missing first.
+# Targets: all (default), check, check-long, check-docs, demo, bench, figures, stability, asan, ubsan, tsan, lint, architecture,
+# valgrind, compilers, fuzz, killtest, install, uninstall, dist, clean. Those that check or show something install what is
+# missing first.
 VERSION := 0.2.0
 
 CC ?= cc
@@ -197,11 +198,16 @@ demo: setup
 	@$(MAKE) --no-print-directory all
 	@scripts/demo.sh $(BUILD)/stdfit
 
+# The sessions, links and options of README.md and docs/ against the program; sessions of measured tables with MERL=DIR.
+check-docs: setup
+	@$(MAKE) --no-print-directory all
+	@MERL='$(MERL)' scripts/check_docs.sh $(BUILD)/stdfit
+
 clean:
 	rm -rf $(BUILD)
 
 include scripts/install.mk
 
-.PHONY: all setup check check-long check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo clean
+.PHONY: all setup check check-long check-docs check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo clean
 
 -include $(lib_objects:.o=.d) $(BUILD)/fit/commands/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))

@@ -60,7 +60,8 @@ uninstall:
 	[ ! -d "$(DESTDIR)$(includedir)/stdfit" ] || rmdir --ignore-fail-on-non-empty "$(DESTDIR)$(includedir)/stdfit"
 
 # Builds and tests by itself. Only what belongs to the project: measured data and tables may lie beside it.
-dist_files := .ci .clang-format .clang-tidy .cppcheck .gitignore CITATION.cff LICENSE Makefile NEWS.md README.md \
+dist_files := .ci .clang-format .clang-tidy .cppcheck .editorconfig .gitignore CITATION.cff CONTRIBUTING.md LICENSE \
+	Makefile NEWS.md README.md \
 	$(sort $(foreach f,$(folders),$(firstword $(subst /, ,$(f))))) docs scripts tests
 dist:
 	@mkdir -p $(BUILD)

@@ -258,7 +258,7 @@ static void slurm_fit_usage(void **state)
 	assert_int_equal(access("x.csv.parts", F_OK), -1);
 }
 
-/* As README has it, but for the way to the other machines. */
+/* As docs/robustness.md has it, but for the way to the other machines. */
 static void parallel_over_ssh(void **state)
 {
 	(void)state;
