@@ -261,11 +261,38 @@ static void the_error_of_a_point(void **state)
 	objective_free(&objective);
 }
 
+/* From lobes that are high to ones that are low and back: what is left of the solve before must not end the next one. */
+static void a_jump_to_another_lobe_ends_at_its_minimum(void **state)
+{
+	static const struct shape shapes[] = {{2e-3, 1.9, 90, 0}, {0.3, 2.5, 1.2, 0},  {0.087, 9.5, 3.2, 0},
+					      {0.01, 1.6, 30, 0}, {0.16, 2.2, 3.1, 0}, {1.5, 1.55, 1.05, 0},
+					      {4e-3, 50, 60, 0},  {0.52, 1.6, 6.5, 0}, {0.12, 1.9, 1.6, 0}};
+	const struct fit_options o = options_for(NULL, NULL);
+	struct objective jumping, fresh;
+	struct linear found, wanted;
+	char label[32];
+
+	(void)state;
+	assert_int_equal(objective_init(&jumping, &table, &o, o.ndf[0], 1, MASKING_COARSE), STATUS_OK);
+	assert_int_equal(objective_init(&fresh, &table, &o, o.ndf[0], 1, MASKING_COARSE), STATUS_OK);
+	for (size_t n = 0; n < sizeof shapes / sizeof *shapes; n++) {
+		objective_jump(&jumping, &shapes[n]);
+		objective_eval(&jumping, &shapes[n], 1e-6, false, &found);
+		objective_forget(&fresh);
+		objective_eval(&fresh, &shapes[n], 1e-7, true, &wanted);
+		snprintf(label, sizeof label, "shape %zu", n);
+		check_between(found.error - wanted.error, -1e-6, 1e-5, label);
+	}
+	objective_free(&jumping);
+	objective_free(&fresh);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(names),
 		cmocka_unit_test(the_error_of_a_point),
+		cmocka_unit_test(a_jump_to_another_lobe_ends_at_its_minimum),
 		cmocka_unit_test(each_ends_with_the_best_it_saw),
 		cmocka_unit_test(a_fit_takes_the_algorithm),
 		cmocka_unit_test(the_way_is_the_same),

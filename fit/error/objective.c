@@ -206,6 +206,20 @@ void objective_fix(struct objective *o, int channel, bool specular, double value
 			o->box[c].lo[specular] = o->box[c].hi[specular] = at;
 }
 
+static bool within_twice(double a, double b)
+{
+	return !(a > 2 * b) && !(b > 2 * a); /* NaN: a parameter that the model lacks */
+}
+
+void objective_jump(struct objective *o, const struct shape *to)
+{
+	const struct shape *from = &o->start.shape;
+
+	if (!within_twice(from->sigma, to->sigma) || !within_twice(from->ior - 1, to->ior - 1) ||
+	    !within_twice(from->k, to->k))
+		memset(o->start.h, 0, sizeof o->start.h);
+}
+
 /* The mean measurement of a problem. */
 static double mean_measured(const struct objective *o, int p)
 {
@@ -303,6 +317,7 @@ double objective_eval(struct objective *o, const struct shape *shape, double tol
 		}
 	}
 	finish(o, problem, n_problems, linear);
+	linear->shape = *shape;
 	o->start = *linear;
 	return linear->error;
 }

@@ -22,6 +22,7 @@ struct linear {
 	double kd[MERL_CHANNELS], ks[MERL_CHANNELS];
 	double error;                  /* E */
 	double h[MERL_CHANNELS][3];    /* what the solve has learnt of the second derivatives by (kd/pi, ks) */
+	struct shape shape;            /* whose they are */
 	double channel[MERL_CHANNELS]; /* the part of E that each has; of a gray fit the first stands for all */
 	double lower_bound;            /* no kd, ks of this shape goes below it (certified evaluations only; else 0) */
 };
@@ -58,6 +59,11 @@ void objective_free(struct objective *objective);
  * objective_begin - or where that of a shape ended, on this table or a sample of it; error 0: from nothing. */
 void objective_forget(struct objective *objective);
 void objective_begin(struct objective *objective, const struct linear *linear);
+
+/* objective_jump - for a search that jumps: forgets the second derivatives of the last inner solve, unless shape `to` is near
+ * the one that they are of. They go with the square of the lobe; handed on to a lobe far smaller, they make a Newton step
+ * that is far too short look like the last one. */
+void objective_jump(struct objective *objective, const struct shape *to);
 
 /* objective_upper_bound - the upper end of kd, or of ks: far beyond any material when unbounded. */
 double objective_upper_bound(const struct fit_options *options, bool specular);
