@@ -54,9 +54,6 @@ static inline void check_between(double got, double low, double high, const char
 		fail_msg("%s: got %.17g, expected a value in [%.17g, %.17g]", label, got, low, high);
 }
 
-enum { GOLDEN_FIELDS = 16 };
-
-/* struct golden - a CSV of reference values: lines of comment starting with '#', a line of names, rows. */
 /* skip_for_want_of - ends a test that cannot run without a Debian package which the machine lacks; skip_because - or for
  * another reason. run_tests.sh counts these lines: a test that is skipped without one is a failure. */
 static inline void skip_for_want_of(const char *package)
@@ -71,20 +68,18 @@ static inline void skip_because(const char *reason)
 	skip();
 }
 
-/* long_tests - whether `make check-long` is running: then a test that goes through many cases of one kind takes all of them,
- * else every case_step()-th. */
-static inline bool long_tests(void)
+/* case_step - for a test that goes through many cases of one kind: 1, to take all of them, when `make check-long` is running;
+ * else `step`, to take every step-th. */
+static inline size_t case_step(size_t step)
 {
 	const char *set = getenv("STDFIT_LONG");
 
-	return set && *set == '1';
+	return set && *set == '1' ? 1 : step;
 }
 
-static inline size_t case_step(size_t step)
-{
-	return long_tests() ? 1 : step;
-}
+enum { GOLDEN_FIELDS = 16 };
 
+/* struct golden - a CSV of reference values: lines of comment starting with '#', a line of names, rows. */
 struct golden {
 	FILE *file;
 	const char *path;
