@@ -44,7 +44,7 @@ static size_t quote_next(const unsigned char **s, char piece[ESCAPE_LENGTH + 1])
 	return length;
 }
 
-void text_quote(const char *s, char *out, size_t size)
+void text_quote(const char *restrict s, char *restrict out, size_t size)
 {
 	static const char ellipsis[] = "...";
 	const unsigned char *from = (const unsigned char *)s;

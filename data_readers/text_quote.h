@@ -9,8 +9,9 @@ enum { TEXT_QUOTE_SIZE = 256 }; /* room for a name inside a struct error, with t
 
 /* text_quote - copies `s` into out[size], terminated: control characters and bytes that are not UTF-8 become \xNN, so
  * that a message stays one line and leaves the terminal alone; of a text that does not fit the end is kept, after
- * "...". For people to read, not to be read back: a backslash stands for itself. size >= 16. Never fails. */
-void text_quote(const char *s, char *out, size_t size);
+ * "...". For people to read, not to be read back: a backslash stands for itself. size >= 16. `out` may not be
+ * `s` itself: the text grows. Never fails. */
+void text_quote(const char *restrict s, char *restrict out, size_t size);
 
 /* text_printable - length of the printable UTF-8 sequence at text; 0 if there is none (end, control character, line
  * separator, overlong form, surrogate, cut short). */

@@ -166,6 +166,8 @@ static void broken_files_are_refused(void **state)
 	REFUSED("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 1\n1234", "found 1 x 0");
 	REFUSED("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32000 +X 32000\n1234", "at most 2^27 pixels");
 	REFUSED("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 1\n1234", "row 2 of 2");
+	REFUSED("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 10000 +X 10000\n12341112",
+		"10000 x 10000 pixels, more than 8 bytes");
 	/* A run that repeats nothing; one that is too long; an encoded row of another width; a run past its end. */
 	REFUSED("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\1\1\1\2", "row 1 of 1");
 	REFUSED("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\3\1\1\2\1\1\1\2", "row 1 of 1");

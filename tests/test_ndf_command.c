@@ -463,6 +463,7 @@ static void refusals(void **state)
 		{"ndf gtr --sigma 1e40 --gamma 900 --theta 1", 2, "gtr does not take these parameters"},
 		{"ndf std --sigma 0.2 --gamma 1.7 --lambda integer --theta 1", 2, "no Lambda integer"},
 		{"ndf low --params 'B=1;Q=2' --theta 1", 2, "bad parameter 'Q=2'"},
+		{"ndf std --params '\n=1' --theta 1", 2, "bad parameter '\\x0a=1'"},
 		{"ndf low --params B=1 --theta 1", 2, "low needs C"},
 		{"ndf ellipsoid --theta 1", 2, "alpha_x"},
 		{"ndf pl --params D0=1 --theta 1", 2, "D1 is missing"},

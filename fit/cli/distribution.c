@@ -31,14 +31,14 @@ static enum status check_params(const char *params, bool (*known)(const char *na
 				const void *context, struct error *error)
 {
 	for (const char *at = given(params) ? params : NULL; at; at = strchr(at, ';')) {
-		char name[32], shown[TEXT_QUOTE_SIZE];
+		char name[32], word[TEXT_QUOTE_SIZE], shown[TEXT_QUOTE_SIZE];
 		double value;
 		at += *at == ';';
 		snprintf(name, sizeof name, "%.*s", (int)strcspn(at, "=;"), at);
 		if (known(name, context) && result_param(at, name, &value) && !isnan(value))
 			continue;
-		snprintf(shown, sizeof shown, "%.*s", (int)strcspn(at, ";"), at);
-		text_quote(shown, shown, sizeof shown);
+		snprintf(word, sizeof word, "%.*s", (int)strcspn(at, ";"), at);
+		text_quote(word, shown, sizeof shown);
 		return error_set(error, STATUS_DOMAIN,
 				 "bad parameter '%.60s': the distribution has no such name, or that is no number",
 				 shown);

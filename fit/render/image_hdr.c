@@ -7,6 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Pixels that a byte of a file can stand for, at most: see image_decode_hdr(). */
+#define PIXELS_PER_BYTE 16.0
+
 struct reader {
 	const unsigned char *bytes;
 	size_t size, at;
@@ -138,8 +141,15 @@ enum status image_decode_hdr(const unsigned char *bytes, size_t size, struct ima
 	enum status status = read_header(&r, &width, &height, &exposure, why);
 	if (!status)
 		status = image_alloc_for(image, (double)width, (double)height, why);
-	if (status)
+	/* Four planes of runs of 127 pixels, two bytes each, are as dense as any writer of today packs them. A header that claims
+	 * more would cost gigabytes. */
+	if (status == STATUS_OK && (double)width * (double)height > PIXELS_PER_BYTE * (double)(size - r.at))
+		status = error_set(why, STATUS_FORMAT, "the header says %ld x %ld pixels, more than %zu bytes can hold",
+				   width, height, size - r.at);
+	if (status != STATUS_OK) {
+		image_free(image);
 		return status;
+	}
 	unsigned char(*pixel)[4] = malloc((size_t)image->width * sizeof *pixel);
 	if (!pixel)
 		status = error_set(why, STATUS_NO_MEMORY, "%s", status_str(STATUS_NO_MEMORY));
