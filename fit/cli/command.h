@@ -11,21 +11,27 @@ enum {
 	EXIT_INTERRUPTED = 130,
 };
 
+/* The commands in the order of the help: COMMAND_<NAME> and cmd_<name>(). */
+#define COMMANDS(X)                                                                                                    \
+	X(FIT, fit)                                                                                                    \
+	X(COMPARE, compare)                                                                                            \
+	X(MERGE, merge)                                                                                                \
+	X(BENCH, bench)                                                                                                \
+	X(EVAL, eval)                                                                                                  \
+	X(INFO, info)                                                                                                  \
+	X(SYNTH, synth)                                                                                                \
+	X(EXPORT, export)                                                                                              \
+	X(NDF, ndf)                                                                                                    \
+	X(SAMPLE, sample)                                                                                              \
+	X(PLOT, plot)                                                                                                  \
+	X(RENDER, render)                                                                                              \
+	X(REPORT, report)
+
 enum command {
-	COMMAND_FIT,
-	COMMAND_COMPARE,
-	COMMAND_MERGE,
-	COMMAND_BENCH,
-	COMMAND_EVAL,
-	COMMAND_INFO,
-	COMMAND_SYNTH,
-	COMMAND_EXPORT,
-	COMMAND_NDF,
-	COMMAND_SAMPLE,
-	COMMAND_PLOT,
-	COMMAND_RENDER,
-	COMMAND_REPORT,
-	COMMAND_COUNT
+#define COMMAND_NUMBER(NAME, name) COMMAND_##NAME,
+	COMMANDS(COMMAND_NUMBER)
+#undef COMMAND_NUMBER
+		COMMAND_COUNT
 };
 
 #endif

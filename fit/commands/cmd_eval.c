@@ -7,16 +7,13 @@
 #include "fit/results/energy_conservation.h"
 #include "fit/sources/model_source.h"
 
+#include <string.h>
+
 enum eval_column {
 	EVAL_PATH,
 	EVAL_NDF,
-	EVAL_NONE,
-	EVAL_COSINE,
-	EVAL_SOLID_ANGLE,
-	EVAL_RMS_COSINE,
-	EVAL_RMS_CUBE_ROOT,
-	EVAL_LOG,
-	EVAL_SAMPLES,
+	EVAL_METRICS, /* those of the result table, under the same names */
+	EVAL_SAMPLES = EVAL_METRICS + RESULT_METRICS,
 	EVAL_ALBEDO_R,
 	EVAL_ALBEDO_G,
 	EVAL_ALBEDO_B,
@@ -25,22 +22,18 @@ enum eval_column {
 	EVAL_COLUMNS
 };
 
-static const struct csv_column columns[EVAL_COLUMNS] = {
-	[EVAL_PATH] = {"path", false},
-	[EVAL_NDF] = {"ndf", false},
-	[EVAL_NONE] = {"error_none", true},
-	[EVAL_COSINE] = {"error_cosine", true},
-	[EVAL_SOLID_ANGLE] = {"error_solid_angle", true},
-	[EVAL_RMS_COSINE] = {"rms_cosine", true},
-	[EVAL_RMS_CUBE_ROOT] = {"rms_cube_root", true},
-	[EVAL_LOG] = {"log_error", true},
-	[EVAL_SAMPLES] = {"samples", true},
-	[EVAL_ALBEDO_R] = {"albedo_r", true},
-	[EVAL_ALBEDO_G] = {"albedo_g", true},
-	[EVAL_ALBEDO_B] = {"albedo_b", true},
-	[EVAL_FURNACE] = {"furnace", true},
-	[EVAL_ENERGY] = {"energy", false},
-};
+static void name_columns(struct csv_column columns[EVAL_COLUMNS])
+{
+	columns[EVAL_PATH] = result_columns[RESULT_PATH];
+	columns[EVAL_NDF] = result_columns[RESULT_NDF];
+	for (int m = 0; m < RESULT_METRICS; m++)
+		columns[EVAL_METRICS + m] = result_columns[RESULT_ERROR_NONE + m];
+	columns[EVAL_SAMPLES] = result_columns[RESULT_SAMPLES];
+	for (int c = 0; c < 3; c++)
+		columns[EVAL_ALBEDO_R + c] = result_columns[RESULT_ALBEDO_R + c];
+	columns[EVAL_FURNACE] = (struct csv_column){"furnace", true};
+	columns[EVAL_ENERGY] = result_columns[RESULT_ENERGY];
+}
 
 struct evaluation {
 	const char *path;
@@ -59,22 +52,15 @@ static enum status evaluate(struct evaluation *e, const struct source_model *sou
 		return error_set(error, status, "cannot compare with '%s': %.200s", name, why.text);
 	}
 	const struct energy_conservation energy = energy_conservation_of(&source->model);
-	const double number[EVAL_COLUMNS] = {
-		[EVAL_NONE] = m.error[WEIGHT_NONE],
-		[EVAL_COSINE] = m.error[WEIGHT_COSINE],
-		[EVAL_SOLID_ANGLE] = m.error[WEIGHT_SOLID_ANGLE],
-		[EVAL_RMS_COSINE] = m.rms_cosine,
-		[EVAL_RMS_CUBE_ROOT] = m.rms_cube_root,
-		[EVAL_LOG] = m.log_error,
-		[EVAL_SAMPLES] = (double)m.samples,
-		[EVAL_ALBEDO_R] = energy.albedo[0],
-		[EVAL_ALBEDO_G] = energy.albedo[1],
-		[EVAL_ALBEDO_B] = energy.albedo[2],
-		[EVAL_FURNACE] = energy_conservation_furnace(&source->model),
-	};
+	double number[EVAL_COLUMNS];
+	for (int metric = 0; metric < RESULT_METRICS; metric++)
+		number[EVAL_METRICS + metric] = result_metric(&m, RESULT_ERROR_NONE + (enum result_column)metric);
+	number[EVAL_SAMPLES] = (double)m.samples;
+	memcpy(&number[EVAL_ALBEDO_R], energy.albedo, sizeof energy.albedo);
+	number[EVAL_FURNACE] = energy_conservation_furnace(&source->model);
 	char text[EVAL_COLUMNS][CSV_NUMBER_SIZE];
 	const char *cell[EVAL_COLUMNS] = {e->path, ndf_name(source->model.ndf.class)};
-	for (int c = EVAL_NONE; c < EVAL_ENERGY; c++)
+	for (int c = EVAL_METRICS; c < EVAL_ENERGY; c++)
 		cell[c] = csv_number(text[c], number[c]);
 	cell[EVAL_ENERGY] = energy_conservation_name(&energy);
 	if (csv_table_add(&e->output, cell))
@@ -109,6 +95,8 @@ int cmd_eval(int argc, char **argv, atomic_bool *cancel)
 		code = options_usage(COMMAND_EVAL, "--ndf takes one name here");
 	if (code >= 0)
 		return code;
+	struct csv_column columns[EVAL_COLUMNS];
+	name_columns(columns);
 	struct evaluation e = {.path = options.path[0], .output = csv_table_make(columns, EVAL_COLUMNS)};
 	const enum status status = evaluate_all(&e, &options, &error);
 	measurement_free(&e.measurement);

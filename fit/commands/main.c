@@ -73,11 +73,9 @@ static int completion(const char *shell)
 static int dispatch(int argc, char **argv)
 {
 	static int (*const run[COMMAND_COUNT])(int, char **, atomic_bool *) = {
-		[COMMAND_FIT] = cmd_fit,       [COMMAND_COMPARE] = cmd_compare, [COMMAND_BENCH] = cmd_bench,
-		[COMMAND_MERGE] = cmd_merge,   [COMMAND_EVAL] = cmd_eval,       [COMMAND_INFO] = cmd_info,
-		[COMMAND_SYNTH] = cmd_synth,   [COMMAND_EXPORT] = cmd_export,   [COMMAND_NDF] = cmd_ndf,
-		[COMMAND_SAMPLE] = cmd_sample, [COMMAND_PLOT] = cmd_plot,       [COMMAND_REPORT] = cmd_report,
-		[COMMAND_RENDER] = cmd_render,
+#define COMMAND_ENTRY(NAME, name) [COMMAND_##NAME] = cmd_##name,
+		COMMANDS(COMMAND_ENTRY)
+#undef COMMAND_ENTRY
 	};
 	const char *first = argc > 1 ? argv[1] : "";
 	if (!strcmp(first, "--version")) {

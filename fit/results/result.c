@@ -193,15 +193,31 @@ static void set_model(struct row *row, const struct fit_options *options, const 
 	row->cell[RESULT_LAMBDA] = lambda_form_name(model->ndf.lambda_form);
 }
 
+double result_metric(const struct fit_metrics *metrics, enum result_column column)
+{
+	switch ((int)column) {
+	case RESULT_ERROR_NONE:
+		return metrics->error[WEIGHT_NONE];
+	case RESULT_ERROR_COSINE:
+		return metrics->error[WEIGHT_COSINE];
+	case RESULT_ERROR_SOLID_ANGLE:
+		return metrics->error[WEIGHT_SOLID_ANGLE];
+	case RESULT_RMS_COSINE:
+		return metrics->rms_cosine;
+	case RESULT_RMS_CUBE_ROOT:
+		return metrics->rms_cube_root;
+	case RESULT_LOG_ERROR:
+		return metrics->log_error;
+	default:
+		return NAN;
+	}
+}
+
 static void set_metrics(struct row *row, const struct fit_metrics *metrics)
 {
 	set_number(row, RESULT_SAMPLES, (double)metrics->samples);
-	set_number(row, RESULT_ERROR_NONE, metrics->error[WEIGHT_NONE]);
-	set_number(row, RESULT_ERROR_COSINE, metrics->error[WEIGHT_COSINE]);
-	set_number(row, RESULT_ERROR_SOLID_ANGLE, metrics->error[WEIGHT_SOLID_ANGLE]);
-	set_number(row, RESULT_RMS_COSINE, metrics->rms_cosine);
-	set_number(row, RESULT_RMS_CUBE_ROOT, metrics->rms_cube_root);
-	set_number(row, RESULT_LOG_ERROR, metrics->log_error);
+	for (enum result_column c = RESULT_ERROR_NONE; c < RESULT_ERROR_NONE + RESULT_METRICS; c++)
+		set_number(row, c, result_metric(metrics, c));
 }
 
 static void set_energy_conservation(struct row *row, const struct cook_torrance *model)

@@ -52,6 +52,12 @@ enum result_column {
 
 extern const struct csv_column result_columns[RESULT_COLUMNS];
 
+/* The columns of metrics stand side by side. */
+enum { RESULT_METRICS = RESULT_LOG_ERROR - RESULT_ERROR_NONE + 1 };
+
+/* result_metric - the value of a column from RESULT_ERROR_NONE to RESULT_LOG_ERROR; NaN of any other. */
+double result_metric(const struct fit_metrics *metrics, enum result_column column);
+
 /* struct result_source - what the rows of one file share. */
 struct result_source {
 	const char *path;
