@@ -5,24 +5,24 @@
 
 static int by_value(const void *a, const void *b)
 {
-	const float x = ((const struct wish *)a)->value, y = ((const struct wish *)b)->value;
+	const float x = ((const struct weighted_value *)a)->value, y = ((const struct weighted_value *)b)->value;
 
 	return (x > y) - (x < y);
 }
 
-double weighted_median(struct wish *wish, size_t n, double otherwise)
+double weighted_median(struct weighted_value *value, size_t n, double otherwise)
 {
 	double total = 0, sum = 0;
 
 	for (size_t a = 0; a < n; a++)
-		total += (double)wish[a].weight;
+		total += (double)value[a].weight;
 	if (!(total > 0))
 		return otherwise;
-	qsort(wish, n, sizeof *wish, by_value);
+	qsort(value, n, sizeof *value, by_value);
 	for (size_t a = 0; a < n; a++) {
-		sum += (double)wish[a].weight;
+		sum += (double)value[a].weight;
 		if (sum >= total / 2)
-			return fmax(0, (double)wish[a].value);
+			return fmax(0, (double)value[a].value);
 	}
 	return otherwise;
 }

@@ -5,13 +5,13 @@
 
 #include <stddef.h>
 
-/* One entry's wish: D = value makes the model right there; weight: what a unit of D adds to the model. */
-struct wish {
+/* At one entry D = value makes the model right; weight is what a unit of D adds to the model there. */
+struct weighted_value {
 	float value, weight;
 };
 
-/* weighted_median - the D >= 0 that minimises sum weight |value - D|; puts the wishes in order.
+/* weighted_median - the D >= 0 that minimises sum weight |value - D|; sorts the values.
  * Returns: `otherwise` where there is none of positive weight. */
-double weighted_median(struct wish *wish, size_t n, double otherwise);
+double weighted_median(struct weighted_value *value, size_t n, double otherwise);
 
 #endif

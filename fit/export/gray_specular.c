@@ -8,7 +8,7 @@
 
 /* The lobe and the weight at each entry that takes part, the lobe as the value of *wanted; at[] says which entries. */
 static size_t lobe_and_weight(const struct measurement *measurement, const struct fit_options *fit,
-			      const struct cook_torrance *model, struct wish *wanted, size_t *at)
+			      const struct cook_torrance *model, struct weighted_value *wanted, size_t *at)
 {
 	const struct entries entries = entries_make(fit->criterion.bins, measurement->n_phi_d);
 	const double min_cos = max_theta_cos(fit->criterion.max_theta);
@@ -22,8 +22,9 @@ static size_t lobe_and_weight(const struct measurement *measurement, const struc
 				entries_dirs(&entries, i, j, k, &wi, &wo);
 				if (!entry_in_range(wi, wo, min_cos))
 					continue;
-				wanted[n] = (struct wish){(float)cook_torrance_lobe(model, wi, wo),
-							  (float)weight_at(fit->criterion.weight, i, j, wi.z, wo.z)};
+				wanted[n] = (struct weighted_value){
+					(float)cook_torrance_lobe(model, wi, wo),
+					(float)weight_at(fit->criterion.weight, i, j, wi.z, wo.z)};
 				at[n++] = entry;
 			}
 	return n;
@@ -33,15 +34,15 @@ enum status gray_specular(const struct measurement *measurement, const struct fi
 			  struct cook_torrance *model)
 {
 	const double ks = (model->ks[0] + model->ks[1] + model->ks[2]) / 3;
-	struct wish *lobe = calloc(measurement_count(measurement), sizeof *lobe);
-	struct wish *wanted = calloc(measurement_count(measurement), sizeof *wanted);
+	struct weighted_value *lobe = calloc(measurement_count(measurement), sizeof *lobe);
+	struct weighted_value *wanted = calloc(measurement_count(measurement), sizeof *wanted);
 	size_t *at = calloc(measurement_count(measurement), sizeof *at);
 	const bool ready = lobe && wanted && at;
 	const size_t n = ready ? lobe_and_weight(measurement, fit, model, lobe, at) : 0;
 	for (int c = 0; c < MERL_CHANNELS && ready; c++) {
 		for (size_t i = 0; i < n; i++) {
 			const double rest = (double)measurement->value[c][at[i]] - ks * (double)lobe[i].value;
-			wanted[i] = (struct wish){(float)(M_PI * rest), lobe[i].weight};
+			wanted[i] = (struct weighted_value){(float)(M_PI * rest), lobe[i].weight};
 		}
 		model->ks[c] = ks;
 		model->kd[c] = fmin(weighted_median(wanted, n, 0), fmax(1 - ks, 0));

@@ -15,7 +15,7 @@ struct reading {
 	const struct cook_torrance *model;
 	struct entries entries;
 	struct masking masking;
-	struct wish *wish; /* room for one theta_h */
+	struct weighted_value *wish; /* room for one theta_h */
 	double min_cos;
 };
 
@@ -32,7 +32,7 @@ static double lobe_per_D(const struct reading *r, struct vec3 wi, struct vec3 wo
 }
 
 /* The wishes of entry (i, j, k), one a channel; returns how many. */
-static size_t entry_wishes(const struct reading *r, int i, int j, int k, double F, struct wish *wish)
+static size_t entry_wishes(const struct reading *r, int i, int j, int k, double F, struct weighted_value *wish)
 {
 	const struct measurement *measurement = r->measurement;
 	const size_t at = measurement_at(measurement->n_phi_d, i, j, k);
@@ -48,7 +48,7 @@ static size_t entry_wishes(const struct reading *r, int i, int j, int k, double 
 		const double wanted = (double)measurement->value[c][at] - r->model->kd[c] / M_PI;
 
 		if (per_D > 0)
-			wish[n++] = (struct wish){(float)(wanted / per_D), (float)per_D};
+			wish[n++] = (struct weighted_value){(float)(wanted / per_D), (float)per_D};
 	}
 	return n;
 }

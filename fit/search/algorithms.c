@@ -122,7 +122,7 @@ static double error_at(struct run *r, const double x[], struct shape *shape, str
 	return linear->error;
 }
 
-static void tell(const struct run *r, const struct shape *shape, double error)
+static void report(const struct run *r, const struct shape *shape, double error)
 {
 	const struct fit_trace point = {r->class,
 					"full",
@@ -169,7 +169,7 @@ static double evaluate(unsigned dims, const double *x, double *gradient, void *d
 	if (error < r->found->linear.error) {
 		r->found->shape = shape;
 		r->found->linear = linear;
-		tell(r, &shape, error);
+		report(r, &shape, error);
 	}
 	return error;
 }
@@ -291,7 +291,7 @@ static enum status evaluate_once(struct run *r)
 	r->found->evaluations = 1;
 	r->found->starts = r->found->starts_agreeing = 1;
 	error_at(r, nowhere, &r->found->shape, &r->found->linear);
-	tell(r, &r->found->shape, r->found->linear.error);
+	report(r, &r->found->shape, r->found->linear.error);
 	return STATUS_OK;
 }
 

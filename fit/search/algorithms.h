@@ -5,7 +5,7 @@
  * ("-joint" behind the name): over the shape, kd and ks alike, as most fits of the field are made.
  *     esch, isres, crs2    evolutionary: populations of shapes (the paper's kind of search)
  *     direct-l             divides the space into ever smaller boxes; deterministic
- *     mlsl                 SBPLX from points of a sequence, but not twice in one valley
+ *     mlsl                 SBPLX from points of a sequence, but not twice towards one local minimum
  *     sbplx, bobyqa, cobyla, praxis   local searches from points of a sequence, one after the other */
 #ifndef ALGORITHMS_H
 #define ALGORITHMS_H

@@ -61,7 +61,7 @@ struct run {
 	const struct fit_context *context;
 	const struct measurement *measurement;
 	const struct fit_options *options;
-	struct multiresolution levels;
+	struct multiresolution multiresolution;
 	struct scan_minima *minima; /* of the last search of each class, by its index in the table of distributions */
 };
 
@@ -184,9 +184,9 @@ static enum status fit_alone(const struct run *run, const struct ndf_class *clas
 {
 	const double begin = search_clock();
 	struct found found;
-	enum status status = run->options->algorithm
-				     ? algorithm_run(&run->levels.table[SEARCH_LEVELS - 1], run->options, class, &found)
-				     : search_run(&run->levels, run->options, class, &found);
+	enum status status = run->options->algorithm ? algorithm_run(&run->multiresolution.table[SEARCH_LEVELS - 1],
+								     run->options, class, &found)
+						     : search_run(&run->multiresolution, run->options, class, &found);
 
 	if (status == STATUS_OK)
 		status = result_of(run, class, &found, r);
@@ -225,7 +225,7 @@ static enum status fit_all_nested(const struct run *run, const struct nesting *n
 	return STATUS_OK;
 }
 
-/* A result that takes the place of another goes on counting where that one stood. */
+/* A result that replaces another keeps the effort of that one. */
 static void keep_effort(struct fit_result *selected, const struct fit_result *before)
 {
 	selected->starts = before->starts;
@@ -299,7 +299,7 @@ static enum status start_from_nested(const struct run *run, const struct ndf_cla
 	const struct shape known = {r->model.ndf.sigma_x, r->model.ndf.gamma, r->model.n, r->model.k};
 
 	trace_further(&options, &further);
-	status = search_from(&run->levels, &options, class, given, count, &known, r->error, &found);
+	status = search_from(&run->multiresolution, &options, class, given, count, &known, r->error, &found);
 	if (status == STATUS_OK && found.linear.error < r->error) {
 		status = result_of(run, class, &found, &other);
 		if (status == STATUS_OK && other.error < r->error) {
@@ -428,7 +428,7 @@ static enum status fit_free_form(const struct run *run, struct nested *nested, s
 	*r = (struct fit_result){.pwl = calloc(1, sizeof *r->pwl)};
 	if (!r->pwl)
 		return STATUS_NO_MEMORY;
-	status = free_form_run(&run->levels, &exact, starts, n_starts, &found, r->pwl);
+	status = free_form_run(&run->multiresolution, &exact, starts, n_starts, &found, r->pwl);
 	if (status == STATUS_OK) {
 		ndf_from_pwl(&r->model.ndf, r->pwl);
 		status = result_with_ndf(&own, &found, r);
@@ -511,7 +511,7 @@ static enum status find_undetermined(const struct run *run, const struct ndf_cla
 	if (has_sparse_lambda(run, class))
 		options.gamma = m->ndf.gamma; /* the other values have been fitted */
 	if (!options.algorithm)
-		status = undetermined_find(&run->levels, &options, class, &run->minima[index_of(class)], &best,
+		status = undetermined_find(&run->multiresolution, &options, class, &run->minima[index_of(class)], &best,
 					   r->error, settled, &found, &r->evaluations);
 	r->undetermined |= found;
 	r->seconds += search_clock() - begin;
@@ -534,9 +534,9 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 	if (status == STATUS_NO_DATA)
 		return error_set(error, status, "no entry to fit: expected some valid ones that are not all zero");
 	if (status == STATUS_OK && options->algorithm)
-		run.levels.table[SEARCH_LEVELS - 1] = full; /* the others need no thinned tables */
+		run.multiresolution.table[SEARCH_LEVELS - 1] = full; /* the others need no thinned tables */
 	else if (status == STATUS_OK)
-		status = multiresolution_init(&run.levels, &full);
+		status = multiresolution_init(&run.multiresolution, &full);
 	if (status != STATUS_OK)
 		return error_set(error, status, "%s", status_str(status));
 	memory = calloc(1, sizeof *memory);
@@ -552,14 +552,14 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 	for (int n = 0; n < options->n_ndf && status != STATUS_OK; n++)
 		fit_result_free(&results[n]);
 	free(memory);
-	multiresolution_free(&run.levels);
+	multiresolution_free(&run.multiresolution);
 	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
 }
 
 enum status fit_estimate(const struct fit_context *context, const struct measurement *measurement,
 			 const struct fit_options *options, double *estimate, struct error *error)
 {
-	struct multiresolution levels;
+	struct multiresolution multiresolution;
 	struct sample_set full;
 	enum status status = check_arguments(context, measurement, options, error);
 	bool known = true;
@@ -569,19 +569,19 @@ enum status fit_estimate(const struct fit_context *context, const struct measure
 		status = sample_set_init(&full, &context->geometry, measurement, options->threads);
 	if (status != STATUS_OK)
 		return status;
-	status = multiresolution_init(&levels, &full);
+	status = multiresolution_init(&multiresolution, &full);
 	if (status != STATUS_OK)
 		return status;
 	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++) {
 		double one;
 
-		status = search_estimate(&levels, options, options->ndf[n], &one);
+		status = search_estimate(&multiresolution, options, options->ndf[n], &one);
 		*estimate = fmin(*estimate, one);
 		known = known && isfinite(one);
 	}
 	if (!known)
 		*estimate = INFINITY;
-	multiresolution_free(&levels);
+	multiresolution_free(&multiresolution);
 	return status;
 }
 

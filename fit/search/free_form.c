@@ -40,7 +40,7 @@ struct run {
 	const struct fit_options *options;
 	const struct sample_set *sample; /* where node values are proposed */
 	struct objective full, thin;
-	struct wish *wishes;
+	struct weighted_value *values;
 	long evaluations;
 };
 
@@ -82,8 +82,8 @@ static enum status evaluate(struct run *r, struct state *s, double tolerance, bo
 	return STATUS_OK;
 }
 
-/* Adds what slot n says about its row, whose wishes begin at `wish`. Returns how many it added. */
-static int slot_wishes(const struct run *r, const struct state *s, size_t n, struct wish *wish)
+/* Adds the values of D that sample n asks of its row to `wanted`. Returns how many it added. */
+static int sample_values(const struct run *r, const struct state *s, size_t n, struct weighted_value *wanted)
 {
 	const struct sample_set *t = r->sample;
 	const int block = (int)(n / KERNEL_BLOCK), members = block < t->n_pair_blocks ? 2 : 1;
@@ -95,16 +95,16 @@ static int slot_wishes(const struct run *r, const struct state *s, size_t n, str
 			    below = (float)(s->linear.kd[c] / M_PI) * t->w[n];
 
 		for (int a = 0; a < members && per_D > 0; a++)
-			wish[count++] = (struct wish){(value[a * KERNEL_BLOCK] - below) / per_D, per_D};
+			wanted[count++] = (struct weighted_value){(value[a * KERNEL_BLOCK] - below) / per_D, per_D};
 	}
 	return count;
 }
 
-/* New node values: of each row, the median that its entries wish for under the present kd, ks, n and G. */
+/* New node values: for each row, the median of what its entries ask for under the present kd, ks, n and G. */
 static enum status propose(struct run *r, const struct state *s, double D[MERL_THETA_H])
 {
 	const struct sample_set *t = r->sample;
-	const size_t slots = (size_t)t->n_blocks * KERNEL_BLOCK;
+	const size_t samples = (size_t)t->n_blocks * KERNEL_BLOCK;
 	size_t begin[MERL_THETA_H + 1] = {0}, end[MERL_THETA_H];
 	double unit[MERL_THETA_H];
 	enum status status = use(r, &r->thin, s);
@@ -117,20 +117,20 @@ static enum status propose(struct run *r, const struct state *s, double D[MERL_T
 	status = objective_lobe(&r->thin, &s->shape);
 	if (status != STATUS_OK)
 		return status;
-	for (size_t n = 0; n < slots; n++)
+	for (size_t n = 0; n < samples; n++)
 		begin[t->row[n] / MERL_THETA_D + 1] += 2 * MERL_CHANNELS;
 	for (int i = 0; i < MERL_THETA_H; i++) {
 		begin[i + 1] += begin[i];
 		end[i] = begin[i];
 	}
-	for (size_t n = 0; n < slots; n++) {
+	for (size_t n = 0; n < samples; n++) {
 		const int i = t->row[n] / MERL_THETA_D;
 
-		end[i] += (size_t)slot_wishes(r, s, n, r->wishes + end[i]);
+		end[i] += (size_t)sample_values(r, s, n, r->values + end[i]);
 	}
 #pragma omp parallel for num_threads(r->options->threads) schedule(dynamic) if (r->options->threads > 1)
 	for (int i = 0; i < MERL_THETA_H; i++)
-		D[i] = weighted_median(r->wishes + begin[i], end[i] - begin[i], s->D[i]);
+		D[i] = weighted_median(r->values + begin[i], end[i] - begin[i], s->D[i]);
 	return STATUS_OK;
 }
 
@@ -185,7 +185,7 @@ static enum status step_nodes(struct run *r, struct state *s)
 	return status;
 }
 
-/* Moves one parameter of a state by a step in its own coordinate. Returns false where there is no such place. */
+/* Moves one parameter of a state by a step in its own coordinate. Returns false where there is no such point. */
 static bool move_ior(struct state *s, double step)
 {
 	const double root = (s->shape.ior - 1) / (s->shape.ior + 1) + step; /* sqrt(F0) */
@@ -302,12 +302,12 @@ static enum status run_all(struct run *r, const struct cook_torrance starts[], i
 	return status;
 }
 
-enum status free_form_run(const struct multiresolution *levels, const struct fit_options *options,
+enum status free_form_run(const struct multiresolution *multiresolution, const struct fit_options *options,
 			  const struct cook_torrance starts[], int n_starts, struct found *found, struct pwl *pwl)
 {
-	struct run r = {.options = options, .sample = &levels->table[SEARCH_LEVELS - 2]};
-	const struct sample_set *full = &levels->table[SEARCH_LEVELS - 1];
-	const size_t wishes = (size_t)r.sample->n_blocks * KERNEL_BLOCK * 2 * MERL_CHANNELS;
+	struct run r = {.options = options, .sample = &multiresolution->table[SEARCH_LEVELS - 2]};
+	const struct sample_set *full = &multiresolution->table[SEARCH_LEVELS - 1];
+	const size_t values = (size_t)r.sample->n_blocks * KERNEL_BLOCK * 2 * MERL_CHANNELS;
 	const struct ndf_class *class = ndf_find("pl");
 	enum status status = objective_init(&r.full, full, options, class, 1, MASKING_FINE);
 	struct state best = {0};
@@ -315,8 +315,8 @@ enum status free_form_run(const struct multiresolution *levels, const struct fit
 	*found = (struct found){.starts = n_starts, .starts_agreeing = 1};
 	if (status == STATUS_OK)
 		status = objective_init(&r.thin, r.sample, options, class, 1, MASKING_FINE);
-	r.wishes = malloc(wishes * sizeof *r.wishes);
-	if (status == STATUS_OK && !r.wishes)
+	r.values = malloc(values * sizeof *r.values);
+	if (status == STATUS_OK && !r.values)
 		status = STATUS_NO_MEMORY;
 	if (status == STATUS_OK)
 		status = run_all(&r, starts, n_starts, &best);
@@ -330,7 +330,7 @@ enum status free_form_run(const struct multiresolution *levels, const struct fit
 	}
 	found->evaluations = r.evaluations;
 	found->passes = r.full.passes;
-	free(r.wishes);
+	free(r.values);
 	objective_free(&r.thin);
 	objective_free(&r.full);
 	return status;

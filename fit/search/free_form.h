@@ -21,7 +21,7 @@ MUST_CHECK enum status free_form_pwl(enum bins bins, const double D[FREE_FORM_VA
 /* free_form_run - from each of the n_starts models, of which the best is followed to its end.
  * Returns: *found (shape.ior, shape.k and linear are the model's) and *pwl, which the caller frees.
  * Errors:  STATUS_NO_MEMORY, STATUS_INTERRUPTED */
-MUST_CHECK enum status free_form_run(const struct multiresolution *levels, const struct fit_options *options,
+MUST_CHECK enum status free_form_run(const struct multiresolution *multiresolution, const struct fit_options *options,
 				     const struct cook_torrance starts[], int n_starts, struct found *found,
 				     struct pwl *pwl);
 

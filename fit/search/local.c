@@ -17,7 +17,7 @@ struct local {
 	local_report *report;
 	void *user;
 	struct space_point best;
-	double first; /* error of the place it began at */
+	double first; /* error of the point it began at */
 	int evaluations;
 	double least[PATIENCE(SPACE_DIMS)]; /* the least error as of each of the last evaluations, in turn */
 	nlopt_opt opt;
@@ -61,18 +61,18 @@ static double evaluate(unsigned dims, const double *x, double *gradient, void *d
 }
 
 enum status local_descend(const struct space *space, struct objective *o, const struct local_settings *settings,
-			  local_report *report, void *user, struct space_point *place, bool *limited)
+			  local_report *report, void *user, struct space_point *point, bool *limited)
 {
 	static const double spacing[] = {
 		[COORDINATE_SIGMA] = 0.35, [COORDINATE_GAMMA] = 1.0, [COORDINATE_IOR] = 0.1, [COORDINATE_K] = 0.15};
 	const unsigned dims = (unsigned)space->dims;
 	struct local local = {
-		.space = space, .objective = o, .settings = settings, .report = report, .user = user, .best = *place};
+		.space = space, .objective = o, .settings = settings, .report = report, .user = user, .best = *point};
 	double x[SPACE_DIMS], first[SPACE_DIMS], error;
 
-	objective_begin(o, &place->linear);
+	objective_begin(o, &point->linear);
 	local.best.error = INFINITY;
-	memcpy(x, place->x, sizeof x);
+	memcpy(x, point->x, sizeof x);
 	nlopt_opt opt = nlopt_create(settings->algorithm, dims);
 
 	if (!opt)
@@ -100,6 +100,6 @@ enum status local_descend(const struct space *space, struct objective *o, const 
 	if (limited)
 		*limited = result == NLOPT_MAXEVAL_REACHED && local.best.error < (1 - 1e-4) * local.first - 1e-5;
 	nlopt_destroy(opt);
-	*place = local.best;
+	*point = local.best;
 	return result == NLOPT_OUT_OF_MEMORY ? STATUS_NO_MEMORY : STATUS_OK;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* local - one local search of a space by nlopt, from a place downhill. */
+/* local - one local search of a space by nlopt, from a point downhill. */
 #ifndef LOCAL_H
 #define LOCAL_H
 
@@ -19,11 +19,11 @@ struct local_settings {
 /* Called at every evaluation, by the thread that searches; NULL: nobody. */
 typedef void local_report(void *user, const struct shape *shape, const struct linear *linear);
 
-/* local_descend - improves *place on the objective's table; place->error need not be set before.
- * Returns: the best place seen; *limited (if not NULL): stopped by settings->evaluations while the error still fell
+/* local_descend - improves *point on the objective's table; point->error need not be set before.
+ * Returns: the best point seen; *limited (if not NULL): stopped by settings->evaluations while the error still fell
  * Errors:  STATUS_NO_MEMORY. When the options' cancel is set it ends at once. */
 MUST_CHECK enum status local_descend(const struct space *space, struct objective *objective,
 				     const struct local_settings *settings, local_report *report, void *user,
-				     struct space_point *place, bool *limited);
+				     struct space_point *point, bool *limited);
 
 #endif

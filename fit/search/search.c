@@ -10,28 +10,28 @@
 /* Slots of the thinned tables. Systematic samples this small estimate E to about 0.1, 0.03 and 0.003 %. */
 static const int level_samples[SEARCH_LEVELS - 1] = {3000, 12000, 60000};
 
-enum status multiresolution_init(struct multiresolution *levels, struct sample_set *full)
+enum status multiresolution_init(struct multiresolution *multiresolution, struct sample_set *full)
 {
 	enum status status = STATUS_OK;
 
-	*levels = (struct multiresolution){0};
-	levels->table[SEARCH_LEVELS - 1] = *full;
+	*multiresolution = (struct multiresolution){0};
+	multiresolution->table[SEARCH_LEVELS - 1] = *full;
 	*full = (struct sample_set){0};
 	for (int l = SEARCH_LEVELS - 2; l >= 0 && status == STATUS_OK; l--)
-		status = sample_set_thin(&levels->table[l], &levels->table[l + 1], level_samples[l]);
+		status = sample_set_thin(&multiresolution->table[l], &multiresolution->table[l + 1], level_samples[l]);
 	if (status != STATUS_OK)
-		multiresolution_free(levels);
+		multiresolution_free(multiresolution);
 	return status;
 }
 
-void multiresolution_free(struct multiresolution *levels)
+void multiresolution_free(struct multiresolution *multiresolution)
 {
 	for (int l = 0; l < SEARCH_LEVELS; l++)
-		sample_set_free(&levels->table[l]);
+		sample_set_free(&multiresolution->table[l]);
 }
 
 struct search {
-	const struct multiresolution *levels;
+	const struct multiresolution *multiresolution;
 	const struct fit_options *options;
 	const struct ndf_class *class;
 	struct space space;
@@ -90,12 +90,12 @@ static long grid_size(const struct search *s, int from)
 	return size;
 }
 
-static void grid_place(const struct search *s, long index, struct space_point *place)
+static void grid_point(const struct search *s, long index, struct space_point *point)
 {
 	for (int d = s->space.dims - 1; d >= 0; d--) {
 		const struct axis *a = &s->space.axis[d];
 
-		place->x[d] = space_x(&s->space, d, a->value[index % a->count]);
+		point->x[d] = space_x(&s->space, d, a->value[index % a->count]);
 		index /= a->count;
 	}
 }
@@ -114,7 +114,8 @@ static enum status scan(struct search *s, struct space_point *grid)
 #pragma omp parallel num_threads(s->options->threads) if (s->options->threads > 1)
 	{
 		struct objective o;
-		enum status mine = objective_init(&o, &s->levels->table[0], s->options, s->class, 1, MASKING_COARSE);
+		enum status mine =
+			objective_init(&o, &s->multiresolution->table[0], s->options, s->class, 1, MASKING_COARSE);
 
 #pragma omp for schedule(dynamic)
 		for (long n = 0; n < total; n += stretch) {
@@ -122,7 +123,7 @@ static enum status scan(struct search *s, struct space_point *grid)
 				continue;
 			objective_forget(&o);
 			for (long i = n; i < n + stretch; i++) {
-				grid_place(s, i, &grid[i]);
+				grid_point(s, i, &grid[i]);
 				const struct shape shape = space_shape(&s->space, grid[i].x);
 
 				grid[i].error = objective_eval(&o, &shape, 2e-3, false, &grid[i].linear);
@@ -139,7 +140,7 @@ static enum status scan(struct search *s, struct space_point *grid)
 	return status;
 }
 
-/* Whether no neighbour in the grid is better; of a plateau only the first place counts. */
+/* Whether no neighbour in the grid is better; of a plateau only the first point counts. */
 static bool is_local_minimum(const struct search *s, const struct space_point *grid, long index)
 {
 	long step = 1;
@@ -190,7 +191,7 @@ static int pick_starts(const struct search *s, struct space_point *grid, struct 
 /* How a level is searched. */
 struct stage {
 	const char *name;
-	int max_points; /* places that go on from the level before, at most */
+	int max_points; /* points that go on from the level before, at most */
 	double margin;  /* those whose error is within this of the best, relative */
 	struct local_settings settings;
 };
@@ -214,45 +215,45 @@ static bool near(const struct search *s, const struct space_point *a, const stru
 
 /* Places too near a better one to lead anywhere else go; so do those too far behind the best. What has been found before
  * counts as one of them. Returns how many stay. */
-static int thin_out(const struct search *s, struct space_point *place, int count, const struct stage *stage)
+static int thin_out(const struct search *s, struct space_point *point, int count, const struct stage *stage)
 {
 	int kept = 0;
 
-	qsort(place, (size_t)count, sizeof *place, by_error);
-	const double best = count > 0 ? fmin(place[0].error, s->known.error) : 0;
+	qsort(point, (size_t)count, sizeof *point, by_error);
+	const double best = count > 0 ? fmin(point[0].error, s->known.error) : 0;
 
 	for (int n = 0; n < count && kept < stage->max_points; n++) {
-		bool repeats = isfinite(s->known.error) && near(s, &place[n], &s->known);
+		bool repeats = isfinite(s->known.error) && near(s, &point[n], &s->known);
 
 		for (int m = 0; m < kept && !repeats; m++)
-			repeats = near(s, &place[n], &place[m]);
-		if (!repeats && place[n].error <= (1 + stage->margin) * best)
-			place[kept++] = place[n];
+			repeats = near(s, &point[n], &point[m]);
+		if (!repeats && point[n].error <= (1 + stage->margin) * best)
+			point[kept++] = point[n];
 	}
 	return kept;
 }
 
-/* Refines the places on one level's table one after the other; the calling thread leads, the others of its team help
+/* Refines the points on one level's table one after the other; the calling thread leads, the others of its team help
  * with the passes. */
-static enum status refine_in_turn(struct search *s, int level, struct space_point *place, int count,
+static enum status refine_in_turn(struct search *s, int level, struct space_point *point, int count,
 				  struct found *found)
 {
 	struct objective o;
-	enum status status =
-		objective_init(&o, &s->levels->table[level], s->options, s->class, s->options->threads, MASKING_COARSE);
+	enum status status = objective_init(&o, &s->multiresolution->table[level], s->options, s->class,
+					    s->options->threads, MASKING_COARSE);
 
 	if (status != STATUS_OK)
 		return status;
 	for (int n = 0; n < count && status == STATUS_OK; n++)
-		status = local_descend(&s->space, &o, &stages[level].settings, report, s, &place[n], &found->limited);
+		status = local_descend(&s->space, &o, &stages[level].settings, report, s, &point[n], &found->limited);
 	if (level == SEARCH_LEVELS - 1)
 		found->passes += o.passes;
 	objective_free(&o);
 	return status;
 }
 
-/* The same, one place a thread. */
-static enum status refine_at_once(struct search *s, int level, struct space_point *place, int count)
+/* The same, one point a thread. */
+static enum status refine_at_once(struct search *s, int level, struct space_point *point, int count)
 {
 	enum status status = STATUS_OK;
 
@@ -260,13 +261,13 @@ static enum status refine_at_once(struct search *s, int level, struct space_poin
 	{
 		struct objective o;
 		enum status mine =
-			objective_init(&o, &s->levels->table[level], s->options, s->class, 1, MASKING_COARSE);
+			objective_init(&o, &s->multiresolution->table[level], s->options, s->class, 1, MASKING_COARSE);
 		const bool ready = mine == STATUS_OK;
 
 #pragma omp for schedule(dynamic)
 		for (int n = 0; n < count; n++) {
 			if (mine == STATUS_OK && !cancelled(s))
-				mine = local_descend(&s->space, &o, &stages[level].settings, report, s, &place[n],
+				mine = local_descend(&s->space, &o, &stages[level].settings, report, s, &point[n],
 						     NULL);
 		}
 		if (ready)
@@ -278,16 +279,16 @@ static enum status refine_at_once(struct search *s, int level, struct space_poin
 	return status;
 }
 
-/* Refines the places on a thinned table, whichever way keeps the threads busy. */
-static enum status refine_all(struct search *s, int level, struct space_point *place, int count, struct found *found)
+/* Refines the points on a thinned table, whichever way keeps the threads busy. */
+static enum status refine_all(struct search *s, int level, struct space_point *point, int count, struct found *found)
 {
 	enum status status = STATUS_OK;
 
 	if (count >= s->options->threads || level == 0)
-		return refine_at_once(s, level, place, count);
+		return refine_at_once(s, level, point, count);
 #pragma omp parallel num_threads(s->options->threads)
 #pragma omp single
-	status = refine_in_turn(s, level, place, count, found);
+	status = refine_in_turn(s, level, point, count, found);
 	return status;
 }
 
@@ -301,31 +302,31 @@ static enum status follow_valley(struct search *s, struct space_point *best, str
 {
 	const bool limited = found->limited;
 	const double stage_best = s->stage_best;
-	struct space_point place = *best;
+	struct space_point point = *best;
 	struct objective o;
 	enum status status;
 
 	if (s->space.dims < 2 || best->error > NOISE_FREE || best->error < NEXT_TO_NOTHING)
 		return STATUS_OK;
-	status = objective_init(&o, &s->levels->table[0], s->options, s->class, 1, MASKING_COARSE);
+	status = objective_init(&o, &s->multiresolution->table[0], s->options, s->class, 1, MASKING_COARSE);
 	if (status != STATUS_OK)
 		return status;
 	begin_stage(s, stages[0].name);
-	status = valley_follow(&s->space, &o, report, s, &place);
+	status = valley_follow(&s->space, &o, report, s, &point);
 	objective_free(&o);
 	begin_stage(s, stages[SEARCH_LEVELS - 1].name);
 	s->stage_best = stage_best;
 	if (status == STATUS_OK)
-		status = refine_in_turn(s, SEARCH_LEVELS - 1, &place, 1, found);
-	if (status == STATUS_OK && place.error < best->error)
-		*best = place;
+		status = refine_in_turn(s, SEARCH_LEVELS - 1, &point, 1, found);
+	if (status == STATUS_OK && point.error < best->error)
+		*best = point;
 	else
 		found->limited = limited;
 	return status;
 }
 
-/* Ends on the full table: refines the places, then solves for kd and ks of the best one to a certified optimum. */
-static enum status finish_in_turn(struct search *s, struct space_point *place, int count, struct found *found)
+/* Ends on the full table: refines the points, then solves for kd and ks of the best one to a certified optimum. */
+static enum status finish_in_turn(struct search *s, struct space_point *point, int count, struct found *found)
 {
 	const int full = SEARCH_LEVELS - 1;
 	struct objective o;
@@ -334,17 +335,17 @@ static enum status finish_in_turn(struct search *s, struct space_point *place, i
 	begin_stage(s, stages[full].name);
 	found->limited = false;
 	if (s->space.dims > 0)
-		status = refine_in_turn(s, full, place, count, found);
-	qsort(place, (size_t)count, sizeof *place, by_error);
+		status = refine_in_turn(s, full, point, count, found);
+	qsort(point, (size_t)count, sizeof *point, by_error);
 	if (status == STATUS_OK)
-		status = follow_valley(s, &place[0], found);
+		status = follow_valley(s, &point[0], found);
 	if (status == STATUS_OK)
-		status = objective_init(&o, &s->levels->table[full], s->options, s->class, s->options->threads,
+		status = objective_init(&o, &s->multiresolution->table[full], s->options, s->class, s->options->threads,
 					MASKING_FINE);
 	if (status != STATUS_OK)
 		return status;
-	found->shape = space_shape(&s->space, place[0].x);
-	objective_begin(&o, &place[0].linear);
+	found->shape = space_shape(&s->space, point[0].x);
+	objective_begin(&o, &point[0].linear);
 	objective_eval(&o, &found->shape, 1e-7, true, &found->linear);
 	report(s, &found->shape, &found->linear);
 	found->passes += o.passes;
@@ -352,13 +353,13 @@ static enum status finish_in_turn(struct search *s, struct space_point *place, i
 	return STATUS_OK;
 }
 
-static enum status finish(struct search *s, struct space_point *place, int count, struct found *found)
+static enum status finish(struct search *s, struct space_point *point, int count, struct found *found)
 {
 	enum status status = STATUS_OK;
 
 #pragma omp parallel num_threads(s->options->threads) if (s->options->threads > 1)
 #pragma omp single
-	status = finish_in_turn(s, place, count, found);
+	status = finish_in_turn(s, point, count, found);
 	return status;
 }
 
@@ -372,31 +373,31 @@ static double next_uniform(uint64_t *state)
 	return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
 }
 
-/* Random places, uniform in the coordinates. They start on the second table, which the scan has not seen: a valley that
+/* Random points, uniform in the coordinates. They start on the second table, which the scan has not seen: a valley that
  * the coarsest one hides can still be found. */
-static void random_places(const struct search *s, struct space_point place[], int count)
+static void random_points(const struct search *s, struct space_point point[], int count)
 {
 	uint64_t state = s->options->seed;
 
 	for (int n = 0; n < count; n++)
 		for (int d = 0; d < s->space.dims; d++)
-			place[n].x[d] = s->space.lo[d] + (s->space.hi[d] - s->space.lo[d]) * next_uniform(&state);
+			point[n].x[d] = s->space.lo[d] + (s->space.hi[d] - s->space.lo[d]) * next_uniform(&state);
 }
 
-/* How many of place[from .. count - 1] are within 0.1 % of the best of all, the known one included. */
-static int agreeing(const struct search *s, const struct space_point place[], int from, int count)
+/* How many of point[from .. count - 1] are within 0.1 % of the best of all, the known one included. */
+static int agreeing(const struct search *s, const struct space_point point[], int from, int count)
 {
 	double best = s->known.error;
 	int agree = 0;
 
 	for (int n = 0; n < count; n++)
-		best = fmin(best, place[n].error);
+		best = fmin(best, point[n].error);
 	for (int n = from; n < count; n++)
-		agree += place[n].error <= 1.001 * best;
+		agree += point[n].error <= 1.001 * best;
 	return agree;
 }
 
-/* The best place of each slice of the grid. */
+/* The best point of each slice of the grid. */
 static void note_slices(const struct search *s, const struct space_point *grid, struct scan_minima *minima)
 {
 	const long total = grid_size(s, 0);
@@ -416,8 +417,8 @@ static void note_slices(const struct search *s, const struct space_point *grid, 
 	}
 }
 
-/* The places to start from: the local minima of a scan. Returns how many, 0 on failure. */
-static int first_places(struct search *s, struct space_point place[], struct scan_minima *minima, enum status *status)
+/* The points to start from: the local minima of a scan. Returns how many, 0 on failure. */
+static int first_points(struct search *s, struct space_point point[], struct scan_minima *minima, enum status *status)
 {
 	struct space_point *grid = calloc((size_t)grid_size(s, 0), sizeof *grid);
 	int count = 0;
@@ -426,7 +427,7 @@ static int first_places(struct search *s, struct space_point place[], struct sca
 	*status = grid ? scan(s, grid) : STATUS_NO_MEMORY;
 	if (*status == STATUS_OK) {
 		note_slices(s, grid, minima);
-		count = pick_starts(s, grid, place);
+		count = pick_starts(s, grid, point);
 		if (count < 0)
 			*status = STATUS_NO_MEMORY;
 	}
@@ -434,8 +435,8 @@ static int first_places(struct search *s, struct space_point place[], struct sca
 	return *status == STATUS_OK ? count : 0;
 }
 
-/* Runs the stages on the thinned tables. Returns how many places are left for the full one, best first. */
-static int descend(struct search *s, struct space_point place[], int count, struct found *found, enum status *status)
+/* Runs the stages on the thinned tables. Returns how many points are left for the full one, best first. */
+static int descend(struct search *s, struct space_point point[], int count, struct found *found, enum status *status)
 {
 	const int n_random = s->options->starts;
 
@@ -443,24 +444,24 @@ static int descend(struct search *s, struct space_point place[], int count, stru
 		int from = 0;
 
 		if (level > 0)
-			from = count = thin_out(s, place, count, &stages[level]);
+			from = count = thin_out(s, point, count, &stages[level]);
 		if (level == 1) {
-			random_places(s, place + count, n_random);
+			random_points(s, point + count, n_random);
 			count += n_random;
 		}
 		begin_stage(s, stages[level].name);
 		if (count > 0)
-			*status = refine_all(s, level, place, count, found);
+			*status = refine_all(s, level, point, count, found);
 		if (level <= 1)
-			found->starts_agreeing += agreeing(s, place, from, count);
+			found->starts_agreeing += agreeing(s, point, from, count);
 	}
-	return *status == STATUS_OK ? thin_out(s, place, count, &stages[SEARCH_LEVELS - 1]) : 0;
+	return *status == STATUS_OK ? thin_out(s, point, count, &stages[SEARCH_LEVELS - 1]) : 0;
 }
 
-static struct search new_search(const struct multiresolution *levels, const struct fit_options *options,
+static struct search new_search(const struct multiresolution *multiresolution, const struct fit_options *options,
 				const struct ndf_class *class)
 {
-	struct search s = {.levels = levels,
+	struct search s = {.multiresolution = multiresolution,
 			   .options = options,
 			   .class = class,
 			   .known = {.error = INFINITY},
@@ -470,67 +471,67 @@ static struct search new_search(const struct multiresolution *levels, const stru
 	return s;
 }
 
-enum status search_run(const struct multiresolution *levels, const struct fit_options *options,
+enum status search_run(const struct multiresolution *multiresolution, const struct fit_options *options,
 		       const struct ndf_class *class, struct found *found)
 {
-	struct search s = new_search(levels, options, class);
-	struct space_point *place = calloc(STARTS_MAX + (size_t)options->starts + 1, sizeof *place);
-	enum status status = place ? STATUS_OK : STATUS_NO_MEMORY;
+	struct search s = new_search(multiresolution, options, class);
+	struct space_point *point = calloc(STARTS_MAX + (size_t)options->starts + 1, sizeof *point);
+	enum status status = point ? STATUS_OK : STATUS_NO_MEMORY;
 	int count = 1;
 
 	*found = (struct found){.starts = 1, .starts_agreeing = s.space.dims == 0};
 	if (s.space.dims > 0 && status == STATUS_OK) {
-		count = first_places(&s, place, &found->minima, &status);
+		count = first_points(&s, point, &found->minima, &status);
 		found->starts = count + options->starts;
-		count = descend(&s, place, count, found, &status);
+		count = descend(&s, point, count, found, &status);
 	}
 	if (status == STATUS_OK)
-		status = finish(&s, place, count, found);
-	free(place);
+		status = finish(&s, point, count, found);
+	free(point);
 	found->evaluations = s.evaluations;
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }
 
-enum status search_estimate(const struct multiresolution *levels, const struct fit_options *options,
+enum status search_estimate(const struct multiresolution *multiresolution, const struct fit_options *options,
 			    const struct ndf_class *class, double *error)
 {
-	struct search s = new_search(levels, options, class);
-	struct space_point place[STARTS_MAX + 1] = {{.error = 0}};
+	struct search s = new_search(multiresolution, options, class);
+	struct space_point point[STARTS_MAX + 1] = {{.error = 0}};
 	struct found found = {.starts = 0};
 	enum status status = STATUS_OK;
-	int count = s.space.dims > 0 ? first_places(&s, place, &found.minima, &status) : 1;
+	int count = s.space.dims > 0 ? first_points(&s, point, &found.minima, &status) : 1;
 
 	for (int level = 0; level < 2 && status == STATUS_OK && s.space.dims > 0; level++) {
 		if (level > 0)
-			count = thin_out(&s, place, count, &stages[level]);
-		status = refine_all(&s, level, place, count, &found);
+			count = thin_out(&s, point, count, &stages[level]);
+		status = refine_all(&s, level, point, count, &found);
 	}
 	*error = INFINITY;
 	for (int n = 0; n < count && s.space.dims > 0; n++)
-		*error = fmin(*error, place[n].error);
+		*error = fmin(*error, point[n].error);
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }
 
-enum status search_from(const struct multiresolution *levels, const struct fit_options *options,
+enum status search_from(const struct multiresolution *multiresolution, const struct fit_options *options,
 			const struct ndf_class *class, const struct shape given[], int n_given,
 			const struct shape *known, double error, struct found *found)
 {
 	struct fit_options own = *options;
 	struct search s;
-	struct space_point place[SEARCH_GIVEN] = {{.error = 0}};
+	struct space_point point[SEARCH_GIVEN] = {{.error = 0}};
 	enum status status = STATUS_OK;
 
 	own.starts = 0;
-	s = new_search(levels, &own, class);
-	space_place(&s.space, known, s.known.x);
+	s = new_search(multiresolution, &own, class);
+	space_from_shape(&s.space, known, s.known.x);
 	s.known.error = error;
 	*found = (struct found){.starts = n_given, .linear.error = INFINITY};
 	for (int n = 0; n < n_given; n++)
-		space_place(&s.space, &given[n], place[n].x);
-	const int count = descend(&s, place, n_given, found, &status);
+		space_from_shape(&s.space, &given[n], point[n].x);
+	const int count = descend(&s, point, n_given, found, &status);
 
 	if (count > 0 && status == STATUS_OK)
-		status = finish(&s, place, count, found);
+		status = finish(&s, point, count, found);
 	found->evaluations = s.evaluations;
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }

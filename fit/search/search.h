@@ -12,9 +12,9 @@ struct multiresolution {
 	struct sample_set table[SEARCH_LEVELS];
 };
 
-/* multiresolution_init - thins `full`, which the levels own from then on, whatever is returned. */
-MUST_CHECK enum status multiresolution_init(struct multiresolution *levels, struct sample_set *full);
-void multiresolution_free(struct multiresolution *levels);
+/* multiresolution_init - thins `full`, which *multiresolution owns from then on, whatever is returned. */
+MUST_CHECK enum status multiresolution_init(struct multiresolution *multiresolution, struct sample_set *full);
+void multiresolution_free(struct multiresolution *multiresolution);
 
 /* struct scan_minima - what the scan of the coarsest table has shown of the shapes that were not chosen: the best for each
  * value of each axis of the space. */
@@ -38,19 +38,19 @@ double search_clock(void);
 
 /* search_run - minimises E over the free parameters among sigma, gamma, ior and k, wherever its minimum is.
  * Errors:  STATUS_NO_MEMORY, STATUS_INTERRUPTED */
-MUST_CHECK enum status search_run(const struct multiresolution *levels, const struct fit_options *options,
+MUST_CHECK enum status search_run(const struct multiresolution *multiresolution, const struct fit_options *options,
 				  const struct ndf_class *class, struct found *found);
 
 /* search_estimate - about what search_run() would end with, from the two smallest samples alone: *error is within 0.3 % of
  * it as a rule, for a quarter of the work.
  * Errors:  as search_run() */
-MUST_CHECK enum status search_estimate(const struct multiresolution *levels, const struct fit_options *options,
+MUST_CHECK enum status search_estimate(const struct multiresolution *multiresolution, const struct fit_options *options,
 				       const struct ndf_class *class, double *error);
 
 /* search_from - goes down from the given shapes only (at most SEARCH_GIVEN), against a shape that is known already and
  * its error: what leads there, or to nothing better, is given up early. If all is, found->linear.error is INFINITY.
  * Errors:  as search_run() */
-MUST_CHECK enum status search_from(const struct multiresolution *levels, const struct fit_options *options,
+MUST_CHECK enum status search_from(const struct multiresolution *multiresolution, const struct fit_options *options,
 				   const struct ndf_class *class, const struct shape given[], int n_given,
 				   const struct shape *known, double error, struct found *found);
 

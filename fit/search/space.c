@@ -113,7 +113,7 @@ double space_x(const struct space *s, int d, double value)
 	return to_coordinate(s->coordinate[d], s->least_gamma, fmin(fmax(value, s->lowest[d]), s->highest[d]));
 }
 
-void space_place(const struct space *s, const struct shape *shape, double x[])
+void space_from_shape(const struct space *s, const struct shape *shape, double x[])
 {
 	struct shape copy = *shape;
 

@@ -15,7 +15,7 @@ enum coordinate {
 	COORDINATE_K,     /* k/(k + 1) */
 };
 
-/* struct axis - values of one parameter, ascending: places of a grid. */
+/* struct axis - values of one parameter, ascending: points of a grid. */
 struct axis {
 	double value[SPACE_VALUES];
 	int count;
@@ -40,9 +40,9 @@ struct space_point {
 
 /* space_init - what the options leave free for an NDF; nothing without a specular term. */
 void space_init(struct space *space, const struct fit_options *options, const struct ndf_class *class);
-/* space_shape - the shape at a point; space_place - the reverse, values out of range moved to the nearest end. */
+/* space_shape - the shape at a point; space_from_shape - the reverse, values out of range moved to the nearest end. */
 struct shape space_shape(const struct space *space, const double x[]);
-void space_place(const struct space *space, const struct shape *shape, double x[]);
+void space_from_shape(const struct space *space, const struct shape *shape, double x[]);
 /* space_x - dimension d's coordinate of a value of its parameter; space_value - the reverse. */
 double space_x(const struct space *space, int d, double value);
 double space_value(const struct space *space, int d, double x);

@@ -12,7 +12,7 @@ struct fixed {
 };
 
 struct refit_context {
-	const struct multiresolution *levels;
+	const struct multiresolution *multiresolution;
 	const struct fit_options *options;
 	const struct ndf_class *class;
 	const struct scan_minima *minima;
@@ -50,7 +50,7 @@ static const struct local_settings level_settings[SEARCH_LEVELS - 1] = {{NLOPT_L
 
 static enum status open_level(const struct refit_context *q, int level, struct objective *o)
 {
-	return objective_init(o, &q->levels->table[level], q->options, q->class, 1,
+	return objective_init(o, &q->multiresolution->table[level], q->options, q->class, 1,
 			      level == SEARCH_LEVELS - 1 ? MASKING_FINE : MASKING_COARSE);
 }
 
@@ -79,7 +79,7 @@ static void count(void *user, const struct shape *shape, const struct linear *li
 	q->evaluations++;
 }
 
-/* E at a place of a space, on the objective's table. */
+/* E at a point of a space, on the objective's table. */
 static double error_at(struct refit_context *q, struct objective *o, const struct space *space, const double x[],
 		       double tolerance, struct linear *linear)
 {
@@ -89,21 +89,21 @@ static double error_at(struct refit_context *q, struct objective *o, const struc
 	return objective_eval(o, &shape, tolerance, false, linear);
 }
 
-/* Adds the place of a shape, if it is among the `max_count` best so far. */
+/* Adds the point of a shape, if it is among the `max_count` best so far. */
 static void offer(struct refit_context *q, struct objective *o, const struct space *space, struct shape shape,
 		  struct space_point *start, int *n, int max_count)
 {
-	struct space_point place;
+	struct space_point point;
 
-	space_place(space, &shape, place.x);
-	place.error = error_at(q, o, space, place.x, 2e-3, &place.linear);
+	space_from_shape(space, &shape, point.x);
+	point.error = error_at(q, o, space, point.x, 2e-3, &point.linear);
 	int at = *n < max_count ? (*n)++ : max_count;
 
-	for (; at > 0 && start[at - 1].error > place.error; at--)
+	for (; at > 0 && start[at - 1].error > point.error; at--)
 		if (at < max_count)
 			start[at] = start[at - 1];
 	if (at < max_count)
-		start[at] = place;
+		start[at] = point;
 }
 
 /* The value of the axis that is next to a fixed parameter's. */
@@ -121,7 +121,7 @@ enum { STARTS = 2 };
 
 /* Where a refit under a fixed parameter begins: at the optimum, and at the best that the scan has seen there. Under a fixed kd or
  * ks, at the best of each sigma; and, since ks may be large where F is small, at the least index. */
-static int first_places(struct refit_context *q, struct objective *o, const struct space *space,
+static int first_points(struct refit_context *q, struct objective *o, const struct space *space,
 			const struct fixed *fixed, struct space_point start[STARTS])
 {
 	const struct scan_minima *e = q->minima;
@@ -145,17 +145,17 @@ static int first_places(struct refit_context *q, struct objective *o, const stru
 	return n;
 }
 
-/* Improves a place on a level's table, on which the optimum has the error `best`, unless there is nothing to search. */
+/* Improves a point on a level's table, on which the optimum has the error `best`, unless there is nothing to search. */
 static enum status descend(struct refit_context *q, struct objective *o, const struct space *space, int level,
-			   double best, struct space_point *place)
+			   double best, struct space_point *point)
 {
 	struct local_settings settings = level_settings[level];
 
 	settings.enough = best * (1 + FIT_UNDETERMINED / 2) + FIT_UNDETERMINED_FLOOR / 2;
-	place->error = error_at(q, o, space, place->x, 0.1 * settings.tolerance, &place->linear);
-	if (space->dims == 0 || place->error <= settings.enough)
+	point->error = error_at(q, o, space, point->x, 0.1 * settings.tolerance, &point->linear);
+	if (space->dims == 0 || point->error <= settings.enough)
 		return STATUS_OK;
-	return local_descend(space, o, &settings, count, q, place, NULL);
+	return local_descend(space, o, &settings, count, q, point, NULL);
 }
 
 /* The best start on the coarsest table, improved. */
@@ -169,7 +169,7 @@ static enum status descend_coarse(struct refit_context *q, const struct fixed *f
 	if (status != STATUS_OK)
 		return status;
 	fix_objective(&o, fixed);
-	const int n = first_places(q, &o, space, fixed, start);
+	const int n = first_points(q, &o, space, fixed, start);
 
 	best->error = INFINITY;
 	for (int i = 0; i < n && best->error > limit_of(0, q->coarse) && status == STATUS_OK; i++) {
@@ -183,7 +183,7 @@ static enum status descend_coarse(struct refit_context *q, const struct fixed *f
 
 /* Goes on under a fixed parameter on the table of a finer level; on the full one only evaluates. */
 static enum status descend_finer(struct refit_context *q, const struct fixed *fixed, const struct space *space,
-				 int level, struct space_point *place, bool *reached)
+				 int level, struct space_point *point, bool *reached)
 {
 	const bool full = level == SEARCH_LEVELS - 1;
 	struct objective o;
@@ -196,10 +196,10 @@ static enum status descend_finer(struct refit_context *q, const struct fixed *fi
 
 	fix_objective(&o, fixed);
 	if (full)
-		place->error = error_at(q, &o, space, place->x, 1e-7, &linear);
+		point->error = error_at(q, &o, space, point->x, 1e-7, &linear);
 	else
-		status = descend(q, &o, space, level, best, place);
-	*reached = place->error <= limit_of(level, best);
+		status = descend(q, &o, space, level, best, point);
+	*reached = point->error <= limit_of(level, best);
 	objective_free(&o);
 	return status;
 }
@@ -208,12 +208,12 @@ static enum status descend_finer(struct refit_context *q, const struct fixed *fi
 static enum status reaches(struct refit_context *q, const struct fixed *fixed, bool *reached)
 {
 	const struct space space = fixed_space(q, fixed);
-	struct space_point place = {.error = INFINITY};
-	enum status status = descend_coarse(q, fixed, &space, &place);
+	struct space_point point = {.error = INFINITY};
+	enum status status = descend_coarse(q, fixed, &space, &point);
 
-	*reached = place.error <= limit_of(0, q->coarse);
+	*reached = point.error <= limit_of(0, q->coarse);
 	for (int level = 1; level < SEARCH_LEVELS && *reached && status == STATUS_OK; level++)
-		status = descend_finer(q, fixed, &space, level, &place, reached);
+		status = descend_finer(q, fixed, &space, level, &point, reached);
 	return status;
 }
 
@@ -285,7 +285,7 @@ static enum status factor(struct refit_context *q, int channel, bool specular, b
 	enum { SHARES = 8 };
 	static const double share[2][SHARES] = {{1, 0, 0.6, 0.3, 0.1, 1e-2, 1e-3, 1e-4},
 						{0, 1, 0.6, 0.3, 0.1, 1e-2, 1e-3, 1e-4}};
-	const double most = objective_upper_bound(q->options, specular);
+	const double maximum = objective_upper_bound(q->options, specular);
 	double value[SHARES];
 
 	*undetermined = false;
@@ -299,7 +299,7 @@ static enum status factor(struct refit_context *q, int channel, bool specular, b
 	if (status != STATUS_OK || *undetermined)
 		return status;
 	for (int n = 0; n < SHARES; n++)
-		value[n] = most * share[specular][n];
+		value[n] = maximum * share[specular][n];
 	return reaches_all(q, (struct fixed){.dim = -1, .channel = channel, .specular = specular}, value, SHARES,
 			   undetermined);
 }
@@ -427,12 +427,15 @@ static enum status find_of_table(struct refit_context *q, unsigned *undetermined
 	return status;
 }
 
-enum status undetermined_find(const struct multiresolution *levels, const struct fit_options *options,
+enum status undetermined_find(const struct multiresolution *multiresolution, const struct fit_options *options,
 			      const struct ndf_class *class, const struct scan_minima *minima, const struct shape *best,
 			      double error, unsigned determined, unsigned *undetermined, long *evaluations)
 {
-	struct refit_context q = {
-		.levels = levels, .options = options, .class = class, .minima = minima, .best = *best};
+	struct refit_context q = {.multiresolution = multiresolution,
+				  .options = options,
+				  .class = class,
+				  .minima = minima,
+				  .best = *best};
 	bool any_shape = false;
 	unsigned all = 0;
 

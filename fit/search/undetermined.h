@@ -18,9 +18,9 @@ double undetermined_limit(double error);
  * on the full table is `error`. Counts the shapes that it evaluates in *evaluations.
  * Given:  *minima of the search_run() of this NDF under these options; determined: parameters known not to be
  * Errors: STATUS_NO_MEMORY, STATUS_INTERRUPTED */
-MUST_CHECK enum status undetermined_find(const struct multiresolution *levels, const struct fit_options *options,
-					 const struct ndf_class *class, const struct scan_minima *minima,
-					 const struct shape *best, double error, unsigned determined,
-					 unsigned *undetermined, long *evaluations);
+MUST_CHECK enum status undetermined_find(const struct multiresolution *multiresolution,
+					 const struct fit_options *options, const struct ndf_class *class,
+					 const struct scan_minima *minima, const struct shape *best, double error,
+					 unsigned determined, unsigned *undetermined, long *evaluations);
 
 #endif

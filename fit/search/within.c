@@ -142,7 +142,7 @@ static enum status try_variant(struct selection *s, int i, struct error *error)
 	return STATUS_OK;
 }
 
-/* The place of a variant in the list; -1 if it is not there. */
+/* The point of a variant in the list; -1 if it is not there. */
 static int find_variant(const struct variants *list, unsigned terms, int ndf)
 {
 	for (int i = 0; i < list->n; i++)
@@ -167,8 +167,8 @@ static int take_whole(struct selection *s, const struct fit_result *whole, doubl
 	*s->result = whole[best];
 	for (int i = 0; i < s->options->n_ndf; i++) {
 		const struct variant v = {all_terms(s->options), i};
-		const int place = find_variant(&s->list, v.terms, i);
-		if (place < 0)
+		const int point = find_variant(&s->list, v.terms, i);
+		if (point < 0)
 			continue;
 		if (whole[i].error > s->limit) {
 			drop_inside(s->options, &s->list, v);
@@ -176,7 +176,7 @@ static int take_whole(struct selection *s, const struct fit_result *whole, doubl
 		}
 		*s->chosen = variant_options(s->options, v);
 		*s->result = whole[i];
-		s->list.n = place;
+		s->list.n = point;
 	}
 	return richest;
 }
