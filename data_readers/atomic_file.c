@@ -49,8 +49,8 @@ static bool names_descriptor(const char *path)
 	return strncmp(path, "/proc/", 6) == 0 || strncmp(path, "/dev/fd/", 8) == 0;
 }
 
-/* Where `path` leads once links in its last part are followed, even if nothing is there; NULL and errno on failure.
- * realpath() would not do: it refuses a link to a file that is still to be made. */
+/* The target of `path` once links in its last part are followed, even if it does not exist; NULL and errno on failure.
+ * realpath() does not work here: it rejects a link to a file that does not exist yet. */
 static char *follow_links(const char *path)
 {
 	char *at = strdup(path), link[PATH_MAX];
@@ -58,7 +58,7 @@ static char *follow_links(const char *path)
 	for (int links = 0; at && !names_descriptor(at); links++) {
 		const ssize_t length = readlink(at, link, sizeof link - 1);
 		if (length < 0)
-			break; /* no link: this is it, and what else may be wrong opening it will tell */
+			break; /* not a link: the target; opening it reports any other problem */
 		link[length] = '\0';
 		char *next = links < LINKS_MAX ? beside(at, link) : NULL;
 		if (links >= LINKS_MAX)
@@ -118,7 +118,7 @@ static int inherit(const struct atomic_file *file, const struct stat *old)
 	const int fd = fileno(file->stream);
 
 	if (fchown(fd, old->st_uid, old->st_gid) != 0 && fchown(fd, (uid_t)-1, old->st_gid) != 0) {
-		/* Somebody else's file in our directory: ours from now on. */
+		/* The old file had another owner, and its owner cannot be set: the new file stays ours. */
 	}
 	return fchmod(fd, old->st_mode & 0777) == 0 ? 0 : errno;
 }
@@ -139,7 +139,7 @@ static int open_output(struct atomic_file *file)
 		return ENOENT;
 	if (file->target[directory_length(file->target)] == '\0')
 		return EISDIR; /* ends in a slash */
-	/* A rename needs no right to write to the old file; one that is read-only was meant to stay. */
+	/* rename() replaces a read-only file too, but its owner meant it to stay. */
 	if (exists && faccessat(AT_FDCWD, file->target, W_OK, AT_EACCESS) != 0)
 		return errno;
 	const int errnum = open_temp(file);

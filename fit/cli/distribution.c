@@ -15,7 +15,7 @@ static bool given(const char *word)
 	return word && *word;
 }
 
-/* A number from a word; `otherwise` where there is none; NaN where the word is no number, told in `error`. */
+/* A number from a word; `otherwise` where there is none; NaN where the word is no number, with the reason in `error`. */
 static enum status number(const char *what, const char *word, double otherwise, double *value, struct error *error)
 {
 	char shown[TEXT_QUOTE_SIZE];
@@ -51,7 +51,7 @@ static enum status does_not_take(const char *name, struct error *error)
 	return error_set(error, STATUS_DOMAIN, "%s does not take these parameters", name);
 }
 
-/* Why a class does not take parameters, value[i] for ndf_param_at(class, i); NaN: not looked at. */
+/* Checks the parameters of a class, value[i] for ndf_param_at(class, i); NaN: not checked. */
 static enum status refuse_params(const struct ndf_class *class, const double value[], struct error *error)
 {
 	for (int i = 0; i < NDF_PARAMS_MAX && ndf_param_at(class, i); i++) {

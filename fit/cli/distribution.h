@@ -14,7 +14,7 @@ struct distribution_words {
 	const char *sigma, *sigma_y; /* roughness; sigma_y: along y, if another */
 	const char *gamma;
 	const char *
-		params; /* name=value;... for what sigma and gamma do not say: x of t-family; B and C of low, in place of
+		params; /* name=value;... for what sigma and gamma do not say: x of t-family; B and C of low, instead of
 			     * sigma and gamma; D0 to D90 of pl at the nodes of MERL's theta_h (`bins` node) and at the horizon;
 			     * alpha_x, alpha_y and theta_x, theta_y, theta_z (degrees, 0 if not given) of the ellipsoid */
 	const char *lambda; /* form of Lambda */

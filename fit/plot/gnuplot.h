@@ -8,8 +8,9 @@
 #include <stdio.h>
 
 /* gnuplot_string - the text as a string of gnuplot, in which nothing is expanded: in single quotes, on one line, made
- * printable. A single quote in it stands in a string of its own, joined by dots: doubled, as the manual has it, gnuplot 5.4
- * takes it for an end where two meet or one comes first. Where gnuplot would still read marks of its own (^, _, {}), the script says `noenhanced`. */
+ * printable. A single quote becomes a string of its own, joined by dots. Doubling it, as the manual says, fails in gnuplot 5.4
+ * for two in a row and for one at the start. Where gnuplot would still interpret ^, _ or {}, the script says
+ * `noenhanced`. */
 void gnuplot_string(FILE *file, const char *text);
 
 /* gnuplot_begin - the head of a script that draws NAME.png and NAME.svg of that many pixels: everything up to gnuplot_end()

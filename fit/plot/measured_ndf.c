@@ -31,7 +31,7 @@ static double lobe_per_D(const struct reading *r, struct vec3 wi, struct vec3 wo
 				     masking_at(&r->masking, masking_q(wo)), cosines);
 }
 
-/* The wishes of entry (i, j, k), one a channel; returns how many. */
+/* The values of D that entry (i, j, k) gives, one per channel; returns how many. */
 static size_t entry_wishes(const struct reading *r, int i, int j, int k, double F, struct wish *wish)
 {
 	const struct measurement *measurement = r->measurement;

@@ -26,7 +26,7 @@ struct materials {
 
 /* materials_collect - rows of the one result table among the command's paths, or of a fit of its files.
  * A fit's rows are kept in DIR/fits.csv, DIR being the command's output.
- * Returns an exit code, what went wrong told on standard error: EXIT_FAILED with some materials in hand when only a part
+ * Returns an exit code, what went wrong reported on standard error: EXIT_FAILED with some materials in hand when only a part
  * of the files could be fitted. */
 int materials_collect(struct materials *materials, const struct options *options);
 void materials_free(struct materials *materials);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* row_pictures - how the models of rows of a result table look beside their measured table. */
+/* row_pictures - picture errors of the models in a result table against their measured table. */
 #ifndef ROW_PICTURES_H
 #define ROW_PICTURES_H
 
