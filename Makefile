@@ -121,8 +121,8 @@ sanitize_tsan := -fsanitize=thread
 environment_tsan = OMP_TOOL_LIBRARIES="$$(clang -print-resource-dir)/../../libarcher.so" \
 	TSAN_OPTIONS="ignore_noninstrumented_modules=1 $$TSAN_OPTIONS"
 
-# The order of the rooms; clang-tidy, cppcheck, clang-format and shellcheck over the whole tree; what they leave out stands
-# in .clang-tidy and .cppcheck.
+# The order of the rooms; clang-tidy, cppcheck, clang-format and shellcheck over the whole tree; what they leave out is
+# listed in .clang-tidy and .cppcheck.
 lint: check-includes
 	@scripts/architecture.sh current docs/architecture.md $(folders)
 	@scripts/setup.sh $@

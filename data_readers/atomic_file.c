@@ -42,8 +42,7 @@ static char *beside(const char *path, const char *name)
 	return joined;
 }
 
-/* Names of open descriptors are links to whatever the descriptor is; replacing that would lose what others write to it.
- */
+/* Names of open descriptors are links to the open file. Replacing it would lose what other programs write to it. */
 static bool names_descriptor(const char *path)
 {
 	return strncmp(path, "/proc/", 6) == 0 || strncmp(path, "/dev/fd/", 8) == 0;
@@ -153,7 +152,7 @@ enum status atomic_file_open(struct atomic_file *file, const char *path, struct 
 
 	if (errnum == 0)
 		return STATUS_OK;
-	if (!file->stream) { /* whatever has the temporary name is not ours */
+	if (!file->stream) { /* a file with the temporary name is not ours */
 		free(file->temp);
 		file->temp = NULL;
 	}

@@ -61,7 +61,7 @@ void measurement_free(struct measurement *measurement)
 	*measurement = (struct measurement){0};
 }
 
-/* From an index to the middle of what it stands for. */
+/* From an index to the middle of its bin. */
 static double shift_of(enum bins bins)
 {
 	return bins == BINS_CENTRE ? 0.5 : 0.0;

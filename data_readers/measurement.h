@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* measurement - a measured isotropic BRDF as a table over (theta_h, theta_d, phi_d), whatever file it came from. */
+/* measurement - a measured isotropic BRDF as a table over (theta_h, theta_d, phi_d), independent of the file format. */
 #ifndef MEASUREMENT_H
 #define MEASUREMENT_H
 

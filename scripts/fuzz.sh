@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # usage: fuzz.sh BUILD SECONDS TARGET...
-# Runs each fuzz target for so many seconds, from its corpus below tests/corpus/. What covers more than that goes to
+# Runs each fuzz target for so many seconds, from its corpus below tests/corpus/. New inputs that cover more go to
 # BUILD/corpus/TARGET/, what fails to BUILD/TARGET-crash-* and the like. Fails if anything did.
 set -u
 

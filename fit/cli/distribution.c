@@ -156,7 +156,7 @@ static enum status refuse_words(const struct ndf_class *class, double sigma_x, d
 {
 	const double sigma = sigma_x >= NDF_SIGMA_MIN && sigma_x <= NDF_SIGMA_MAX ? sigma_y : sigma_x;
 	double value[NDF_PARAMS_MAX] = {NAN, NAN, NAN};
-	/* The second parameter has the domain of gamma, under whatever name. */
+	/* The second parameter has the domain of gamma, whatever its name. */
 	for (int i = 0; ndf_param_at(class, i); i++)
 		value[i] = ndf_param_at(class, i)->role == NDF_ROLE_SIGMA ? sigma : i == 1 ? gamma : NAN;
 	return refuse_params(class, value, error);

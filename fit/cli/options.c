@@ -114,20 +114,18 @@ static bool is_recorded(const struct options *options, const struct option_spec 
 
 char *options_text(const struct options *options)
 {
-	char *text = NULL;
-	size_t size;
-	FILE *file = open_memstream(&text, &size);
-	if (!file)
+	struct text_stream stream;
+	if (!text_stream_open(&stream))
 		return NULL;
 	const char *between = "";
 	for (const struct option_spec *spec = option_specs; spec->name; spec++) {
 		if (!is_recorded(options, spec))
 			continue;
-		fprintf(file, "%s%s=", between, spec->name);
-		option_write(file, options, spec);
+		fprintf(stream.file, "%s%s=", between, spec->name);
+		option_write(stream.file, options, spec);
 		between = " ";
 	}
-	return text_stream_close(file, &text);
+	return text_stream_close(&stream);
 }
 
 /* Help */

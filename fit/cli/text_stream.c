@@ -1,14 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/cli/text_stream.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
 
-char *text_stream_close(FILE *stream, char **text)
+bool text_stream_open(struct text_stream *stream)
 {
-	const bool failed = ferror(stream);
-	if (!fclose(stream) && !failed)
-		return *text;
-	free(*text);
+	*stream = (struct text_stream){0};
+	stream->file = open_memstream(&stream->text, &stream->size);
+	return stream->file;
+}
+
+char *text_stream_close(struct text_stream *stream)
+{
+	const bool failed = ferror(stream->file);
+	if (!fclose(stream->file) && !failed)
+		return stream->text;
+	free(stream->text);
 	return NULL;
 }

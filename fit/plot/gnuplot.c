@@ -59,7 +59,7 @@ void gnuplot_end(FILE *file)
 	fputs("unset output\n}\n", file);
 }
 
-/* The last line of what gnuplot said. */
+/* The last line that gnuplot printed. */
 static void last_words(FILE *said, char *text, size_t size)
 {
 	char line[256];

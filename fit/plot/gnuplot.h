@@ -19,7 +19,7 @@ void gnuplot_begin(FILE *file, const char *name, int width, int height);
 void gnuplot_end(FILE *file);
 
 /* gnuplot_draw - runs NAME.gp in a directory for each name; each makes NAME.png and NAME.svg there, complete or not at
- * all. Errors: STATUS_UNSUPPORTED: gnuplot is not installed; STATUS_IO: it failed, with what it said;
+ * all. Errors: STATUS_UNSUPPORTED: gnuplot is not installed; STATUS_IO: it failed, with its message;
  * STATUS_INTERRUPTED when *cancel is set, within a tenth of a second. Scripts and data stay in any case. */
 MUST_CHECK enum status gnuplot_draw(const char *directory, const char *const *name, int n, const atomic_bool *cancel,
 				    struct error *error);

@@ -48,7 +48,7 @@ static bool same_curve(char *const *a, char *const *b)
 	return true;
 }
 
-/* The curve of a row, added where it is the first of one. */
+/* The curve of a row; a new one is added for its first row. */
 static size_t curve_of(struct curves *c, char *const *row)
 {
 	for (size_t n = c->n; n-- > 0;)
@@ -81,18 +81,16 @@ static bool is_judged(const struct csv_table *trace)
 /* What distinguishes the curve from the others; newly allocated, NULL when out of memory. */
 static char *curve_label(const struct curves *c, const struct curve *curve)
 {
-	char *text = NULL;
-	size_t size;
-	FILE *file = open_memstream(&text, &size);
-	if (!file)
+	struct text_stream stream;
+	if (!text_stream_open(&stream))
 		return NULL;
 	const char *between = "";
 	for (int k = 0; k < CURVE_KEYS; k++)
 		if (c->differ[curve_key[k]] || (c->n == 1 && curve_key[k] == TRACE_ALGORITHM)) {
-			fprintf(file, "%s%s", between, curve->row[curve_key[k]]);
+			fprintf(stream.file, "%s%s", between, curve->row[curve_key[k]]);
 			between = ", ";
 		}
-	return text_stream_close(file, &text);
+	return text_stream_close(&stream);
 }
 
 static enum status find_curves(struct curves *c, const struct csv_table *trace)

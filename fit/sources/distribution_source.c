@@ -39,8 +39,8 @@ static enum status describe(const struct options *options, struct described *ite
 	return distribution_make(&item->words, &item->distribution, error);
 }
 
-/* The distribution of a model, whose table stays with the model, and the words that make it again; there are none for
- * a table. */
+/* The distribution of a model, whose table stays with the model, and the words that describe it; a table has
+ * none. */
 static void move_model(const struct source_model *model, struct described *item)
 {
 	const struct ndf *ndf = &model->model.ndf;

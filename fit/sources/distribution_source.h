@@ -31,7 +31,7 @@ MUST_CHECK enum status distribution_source_read(const struct options *options, s
 						struct error *error);
 void distribution_source_free(struct distribution_source *source);
 
-/* distribution_end - as options_end(), but words that describe nothing (STATUS_DOMAIN, STATUS_UNSUPPORTED) are wrong
+/* distribution_end - as options_end(), but invalid words (STATUS_DOMAIN, STATUS_UNSUPPORTED) are wrong
  * usage. */
 int distribution_end(const struct options *options, enum status status, const struct error *error,
 		     struct csv_table *table);

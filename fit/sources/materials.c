@@ -54,7 +54,7 @@ static enum status sort_rows(struct csv_table *rows)
 	return STATUS_OK;
 }
 
-/* A character of a name, or what stands for it in the name of a file. */
+/* A character of a name, or its replacement in a file name. */
 static char plain(char c, bool first)
 {
 	const bool letter = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
@@ -64,7 +64,7 @@ static char plain(char c, bool first)
 	return '_';
 }
 
-/* Names that differ in what a file name cannot have, or only in case, are distinguished by a number. */
+/* Names that become the same file name, or differ only in case, are distinguished by a number. */
 static void name_files(struct materials *materials)
 {
 	enum { NUMBER_ROOM = 24 };
