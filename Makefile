@@ -37,7 +37,7 @@ lib_sources := $(filter-out fit/commands/main.c,$(foreach folder,$(folders),$(wi
 lib_objects := $(lib_sources:%.c=$(BUILD)/%.o)
 
 # The kernel's loops want vectors; on x86-64 it is compiled a second time for AVX2 and chosen at run time
-# (AVX2=no: not so). No multiply-add in one: both give the same bits, so a fit ends at the same place on any machine.
+# (AVX2=no: not so). No multiply-add in one: both give the same bits, so a fit ends at the same point on any machine.
 CFLAGS_kernel := -O3 -Wno-psabi
 CFLAGS_kernel_avx2 := $(CFLAGS_kernel) -mavx2 -DKERNEL_NAME=kernel_avx2
 CFLAGS_metrics := -O3
@@ -97,7 +97,7 @@ setup:
 	@scripts/setup.sh
 
 # Recursive, so that pkg-config is asked only after the set-up has run. check is what one runs after every change; check-long
-# has the programs that take long, and all cases of those in which check takes some.
+# has the slow programs, and all cases of those of which check runs a part.
 check check-long: setup
 	@$(MAKE) --no-print-directory $(if $(filter check,$@),run-tests,run-long-tests)
 
@@ -110,8 +110,8 @@ run-long-tests: all library $(long_programs)
 run-all-tests: all library $(test_programs)
 	@CC='$(CC)' OPT='$(OPT)' STDFIT_LONG=1 scripts/run_tests.sh $(BUILD) $(test_programs)
 
-# The whole suite under sanitizers, each in a build of its own. ThreadSanitizer needs clang, whose OpenMP tells it, through
-# Archer, what waits for what; of libraries that were not built for it, it knows nothing and should say nothing.
+# The whole suite under sanitizers, each in a build of its own. ThreadSanitizer needs clang, whose OpenMP reports its
+# synchronisation through Archer. It cannot judge libraries that were not built for it: they are ignored.
 asan ubsan tsan: setup
 	@$(environment_$@) $(MAKE) --no-print-directory BUILD=$(BUILD)-$@ OPT='-O1 -g -fno-omit-frame-pointer $(sanitize_$@)' \
 		$(if $(filter tsan,$@),CC=clang) run-all-tests
@@ -121,8 +121,8 @@ sanitize_tsan := -fsanitize=thread
 environment_tsan = OMP_TOOL_LIBRARIES="$$(clang -print-resource-dir)/../../libarcher.so" \
 	TSAN_OPTIONS="ignore_noninstrumented_modules=1 $$TSAN_OPTIONS"
 
-# The order of the rooms; clang-tidy, cppcheck, clang-format and shellcheck over the whole tree; what they leave out stands
-# in .clang-tidy and .cppcheck.
+# The order of the rooms; clang-tidy, cppcheck, clang-format and shellcheck over the whole tree; what they leave out is
+# listed in .clang-tidy and .cppcheck.
 lint: check-includes
 	@scripts/architecture.sh current docs/architecture.md $(folders)
 	@scripts/setup.sh $@

@@ -42,15 +42,14 @@ static char *beside(const char *path, const char *name)
 	return joined;
 }
 
-/* Names of open descriptors are links to whatever the descriptor is; replacing that would lose what others write to it.
- */
+/* Names of open descriptors are links to the open file. Replacing it would lose what other programs write to it. */
 static bool names_descriptor(const char *path)
 {
 	return strncmp(path, "/proc/", 6) == 0 || strncmp(path, "/dev/fd/", 8) == 0;
 }
 
-/* Where `path` leads once links in its last part are followed, even if nothing is there; NULL and errno on failure.
- * realpath() would not do: it refuses a link to a file that is still to be made. */
+/* The target of `path` once links in its last part are followed, even if it does not exist; NULL and errno on failure.
+ * realpath() does not work here: it rejects a link to a file that does not exist yet. */
 static char *follow_links(const char *path)
 {
 	char *at = strdup(path), link[PATH_MAX];
@@ -58,7 +57,7 @@ static char *follow_links(const char *path)
 	for (int links = 0; at && !names_descriptor(at); links++) {
 		const ssize_t length = readlink(at, link, sizeof link - 1);
 		if (length < 0)
-			break; /* no link: this is it, and what else may be wrong opening it will tell */
+			break; /* not a link: the target; opening it reports any other problem */
 		link[length] = '\0';
 		char *next = links < LINKS_MAX ? beside(at, link) : NULL;
 		if (links >= LINKS_MAX)
@@ -118,7 +117,7 @@ static int inherit(const struct atomic_file *file, const struct stat *old)
 	const int fd = fileno(file->stream);
 
 	if (fchown(fd, old->st_uid, old->st_gid) != 0 && fchown(fd, (uid_t)-1, old->st_gid) != 0) {
-		/* Somebody else's file in our directory: ours from now on. */
+		/* The old file had another owner, and its owner cannot be set: the new file stays ours. */
 	}
 	return fchmod(fd, old->st_mode & 0777) == 0 ? 0 : errno;
 }
@@ -139,7 +138,7 @@ static int open_output(struct atomic_file *file)
 		return ENOENT;
 	if (file->target[directory_length(file->target)] == '\0')
 		return EISDIR; /* ends in a slash */
-	/* A rename needs no right to write to the old file; one that is read-only was meant to stay. */
+	/* rename() replaces a read-only file too, but its owner meant it to stay. */
 	if (exists && faccessat(AT_FDCWD, file->target, W_OK, AT_EACCESS) != 0)
 		return errno;
 	const int errnum = open_temp(file);
@@ -153,7 +152,7 @@ enum status atomic_file_open(struct atomic_file *file, const char *path, struct 
 
 	if (errnum == 0)
 		return STATUS_OK;
-	if (!file->stream) { /* whatever has the temporary name is not ours */
+	if (!file->stream) { /* a file with the temporary name is not ours */
 		free(file->temp);
 		file->temp = NULL;
 	}

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* atomic_file - output that is there whole or not at all: written beside its target, renamed when complete. */
+/* atomic_file - output that is complete or absent: written beside its target, renamed when complete. */
 #ifndef ATOMIC_FILE_H
 #define ATOMIC_FILE_H
 
 #include "src/status.h"
 #include <stdio.h>
 
-/* struct atomic_file - an output under way. The caller writes to `stream` and may leave checking for errors to the
- * commit; who sees a write fail can leave errno in `errnum`, and the commit fails with its text instead of a general
+/* struct atomic_file - an open output. The caller writes to `stream` and may leave checking for errors to the commit. A
+ * caller that sees a write fail can store errno in `errnum`: the commit then fails with that reason instead of a general
  * one. */
 struct atomic_file {
 	FILE *stream;
@@ -20,13 +20,13 @@ struct atomic_file {
 /* atomic_file_open - starts writing `path`.
  * A symbolic link stays and what it points to is replaced. A replaced file keeps its mode and, where permitted, its
  * owner, a new one honours the umask. An existing target that is no regular file (terminal, /dev/null, pipe) and a name
- * of an open descriptor (/dev/stdout, /dev/fd/N) are written to straight away, appending; opening a named pipe waits
- * for its reader. Returns STATUS_IO if that cannot be (no such directory, no permission, target read-only or a
+ * of an open descriptor (/dev/stdout, /dev/fd/N) are opened directly, for appending; opening a named pipe waits
+ * until it has a reader. Returns STATUS_IO if this fails (no such directory, no permission, target read-only or a
  * directory), STATUS_NO_MEMORY; `file` is then cleared and nothing is left behind. Errors read "cannot write 'path':
  * reason". */
 MUST_CHECK enum status atomic_file_open(struct atomic_file *file, const char *path, struct error *error);
 
-/* atomic_file_commit - flushes, syncs and closes the output and puts it in the place of its target.
+/* atomic_file_commit - flushes, syncs and closes the output and renames it to its target.
  * Returns STATUS_IO if any of this, or any write before, failed: the target is then as it was and the temporary file is
  * gone. `file` is cleared in either case. */
 MUST_CHECK enum status atomic_file_commit(struct atomic_file *file, struct error *error);

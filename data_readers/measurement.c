@@ -61,13 +61,13 @@ void measurement_free(struct measurement *measurement)
 	*measurement = (struct measurement){0};
 }
 
-/* From an index to the middle of what it stands for. */
+/* From an index to the middle of its bin. */
 static double shift_of(enum bins bins)
 {
 	return bins == BINS_CENTRE ? 0.5 : 0.0;
 }
 
-/* Where entry (i, j, k) stands in degrees, all exact. Conversions are in this file alone. */
+/* The angles of entry (i, j, k) in degrees, all exact. Only this file converts between indices and angles. */
 struct bin_centre {
 	double theta_h_times_90, theta_d, phi_d;
 };
@@ -105,7 +105,7 @@ struct halfdiff_trig bins_trig(enum bins bins, int i, int j, int k)
 	const struct bin_centre at = bin_centre(bins, i, j, k);
 	struct halfdiff_trig t;
 
-	/* theta_h is rounded, so near 90 degrees its cosine is better had from the complement, rounded by itself. */
+	/* theta_h is rounded, so near 90 degrees its cosine is more accurate from the complement, which is rounded separately. */
 	if (at.theta_h_times_90 <= 45.0 * 90.0)
 		sincos_deg(at.theta_h_times_90 / 90.0, &t.sin_h, &t.cos_h);
 	else

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* samples - a measured isotropic BRDF as a table over (theta_h, theta_d, phi_d), whatever file it came from. */
+/* measurement - a measured isotropic BRDF as a table over (theta_h, theta_d, phi_d), independent of the file format. */
 #ifndef MEASUREMENT_H
 #define MEASUREMENT_H
 
@@ -8,7 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Where entry (i, j, k) stands: tools of the field disagree, so it is an option, recorded in every result. */
+/* The angles that entry (i, j, k) stands for. Programs of the field disagree, so this is an option, and every result
+ * records it. */
 enum bins {
 	BINS_NODE,   /* theta_h = i^2/90 deg, theta_d = j deg, phi_d = k deg */
 	BINS_CENTRE, /* theta_h = (i + 1/2)^2/90 deg, theta_d = j + 1/2 deg, phi_d = k + 1/2 deg */
@@ -33,9 +34,8 @@ MUST_CHECK enum status bins_find(const char *name, enum bins *bins);
 
 /* measurement_alloc - a table of the given n_phi_d (180 or 360), every entry masked (NaN). Free with measurement_free. */
 MUST_CHECK enum status measurement_alloc(struct measurement *measurement, int n_phi_d);
-/* measurement_reserve - the same with unset values, for a reader that is going to set every one and can do without the pass
- * over memory that filling them is. Both return STATUS_DOMAIN for another n_phi_d, STATUS_NO_MEMORY; *samples is then
- * cleared. */
+/* measurement_reserve - the same with unset values, for a reader that sets every one: it saves a pass over the memory. Both
+ * return STATUS_DOMAIN for another n_phi_d, STATUS_NO_MEMORY; *measurement is then cleared. */
 MUST_CHECK enum status measurement_reserve(struct measurement *measurement, int n_phi_d);
 /* measurement_free - releases the planes and clears the struct; harmless on a zeroed one. */
 void measurement_free(struct measurement *measurement);
@@ -45,7 +45,8 @@ static inline size_t measurement_count(const struct measurement *measurement)
 	return (size_t)MERL_THETA_H * MERL_THETA_D * (size_t)measurement->n_phi_d;
 }
 
-/* measurement_at - which place of a plane with this n_phi_d entry (i, j, k) of theta_h, theta_d, phi_d has: the file's order. */
+/* measurement_at - the index of entry (i, j, k) of theta_h, theta_d, phi_d in a plane with this n_phi_d, in the order of the
+ * file. */
 static inline size_t measurement_at(int n_phi_d, int i, int j, int k)
 {
 	return (size_t)k + (size_t)n_phi_d * ((size_t)j + MERL_THETA_D * (size_t)i);
@@ -64,7 +65,7 @@ struct bins_indices bins_indices(enum bins bins, struct halfdiff angles);
 int bins_mirror(enum bins bins, int k);
 
 /* bins_trig - sines and cosines of theta_h, theta_d and phi_d of entry (i, j, k), to the last ulp or two:
- * above 45 degrees taken from the complement, and exactly 0 or 1 where the angle says so. */
+ * above 45 degrees computed from the complement, and exactly 0 or 1 where they should be. */
 struct halfdiff_trig bins_trig(enum bins bins, int i, int j, int k);
 
 #endif

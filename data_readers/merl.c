@@ -175,9 +175,8 @@ static struct masked mask(const struct measurement *measurement, size_t first, s
 	return (struct masked){n_negative, n_nonfinite};
 }
 
-/* struct turns - lets threads do a thing one after the other. Unlike OpenMP's `ordered` it sleeps while it waits: on a
- * busy machine a thread that spins takes the processor from the very one that it waits for, and reading takes ten times
- * as long. */
+/* struct turns - lets threads do something one after the other. Unlike OpenMP's `ordered`, a waiting thread sleeps. On a
+ * busy machine a spinning thread competes with the one it waits for, and reading takes ten times as long. */
 struct turns {
 	pthread_mutex_t mutex;
 	pthread_cond_t changed;
@@ -212,7 +211,7 @@ static enum status read_planes(int fd, int threads, XXH3_state_t *hash, uint64_t
 	atomic_int next = 0, failed = 0;
 
 #pragma omp parallel num_threads(threads) reduction(+ : n_negative, n_nonfinite)
-	/* Blocks are handed out in file order, so whoever has the one whose turn it is can go on. */
+	/* Blocks are handed out in file order, so the thread that has the next block never waits for a later one. */
 	for (int block; (block = next++) < N_BLOCKS;) {
 		const int channel = block / BLOCKS_PER_PLANE;
 		const size_t first = (size_t)(block % BLOCKS_PER_PLANE) * count;
@@ -265,7 +264,7 @@ static enum status read_table(int fd, const struct header *header, int threads, 
 	return status;
 }
 
-/* Whoever writes the file while we read leaves us with a mixture of two. */
+/* If another program writes the file meanwhile, what was read may mix two versions. */
 static enum status check_unchanged(int fd, const struct stat *before, struct error *why)
 {
 	struct stat now;

@@ -14,7 +14,7 @@
  * result. An entry with a negative or non-finite value in any channel is masked in all three and counted once, as
  * non-finite if it is both; what is beyond the range of float counts as non-finite, what is too small for a normal
  * float becomes 0. Returns STATUS_IO if the file cannot be opened or read or changes meanwhile; STATUS_FORMAT if it is
- * not a regular file, or its dimensions or size are not a MERL table's; STATUS_NO_MEMORY. *samples is then cleared and
+ * not a regular file, or its dimensions or size are not a MERL table's; STATUS_NO_MEMORY. *measurement is then cleared and
  * `error` (may be NULL) says which file, what was expected, what was found. Never waits on a pipe or a device. */
 MUST_CHECK enum status merl_read(const char *path, int threads, struct measurement *measurement, struct error *error);
 

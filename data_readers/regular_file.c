@@ -8,7 +8,7 @@
 
 enum status regular_file_open(const char *path, const char *what, int *fd, struct stat *st, struct error *why)
 {
-	/* Without O_NONBLOCK a pipe that nobody writes to would wait here for ever. */
+	/* Without O_NONBLOCK opening a pipe without a writer would block here. */
 	do
 		*fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
 	while (*fd < 0 && errno == EINTR);
@@ -55,7 +55,7 @@ enum status regular_file_read(const char *path, const char *what, size_t max_siz
 		if (!*bytes)
 			status = error_set(why, STATUS_NO_MEMORY, "%s", status_str(STATUS_NO_MEMORY));
 	}
-	const int problem = status ? 0 : read_bytes(fd, *bytes, size);
+	const int problem = status != STATUS_OK ? 0 : read_bytes(fd, *bytes, size);
 	if (problem) {
 		free(*bytes);
 		*bytes = NULL;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* regular_file - opening what is to be read, without ever waiting on a pipe or a device. */
+/* regular_file - opens input files, and never waits on a pipe or a device. */
 #ifndef REGULAR_FILE_H
 #define REGULAR_FILE_H
 

@@ -11,7 +11,7 @@
 
 static FILE *open_text(const char *path)
 {
-	/* Without O_NONBLOCK a pipe that nobody writes to would wait here for ever; one that somebody does is waited for. */
+	/* With O_NONBLOCK, opening a pipe without a writer does not block. Reading one that has a writer waits for its data. */
 	const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
 	if (fd < 0)
 		return NULL;

@@ -14,7 +14,7 @@ size_t text_printable(const char *text)
 
 	if (s[0] < 0x80)
 		return s[0] >= 0x20 && s[0] != 0x7f;
-	while (s[0] & (0x80u >> length)) /* the first byte tells the length by the ones in front of its first zero */
+	while (s[0] & (0x80u >> length)) /* the leading ones of the first byte give the length */
 		length++;
 	if (length < 2 || length > 4)
 		return 0;

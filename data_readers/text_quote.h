@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* text_quote - names of files, made fit for a line of text. */
+/* text_quote - makes file names safe to print on one line. */
 #ifndef TEXT_QUOTE_H
 #define TEXT_QUOTE_H
 

@@ -31,7 +31,7 @@ begin='<!-- include graph: begin -->'
 end='<!-- include graph: end -->'
 
 # All lines of all files pass through one awk, which knows what is included by whom.
-look_through() {
+scan() {
 	# shellcheck disable=SC2016,SC2086 # an awk program; a list of words
 	find $rooms -maxdepth 1 -name '*.[ch]' | LC_ALL=C sort | xargs awk -v rooms="$rooms" -v action="$1" '
 	BEGIN {
@@ -106,7 +106,7 @@ look_through() {
 
 # The page with the outline of today between its markers.
 renewed() {
-	outline=$(look_through outline)
+	outline=$(scan outline)
 	awk -v begin="$begin" -v end="$end" -v outline="$outline" '
 	$0 == end { inside = 0 }
 	!inside { print }
@@ -131,5 +131,5 @@ current)
 		exit 1
 	}
 	;;
-*) look_through "$action" ;;
+*) scan "$action" ;;
 esac

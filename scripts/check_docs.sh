@@ -151,7 +151,7 @@ same_output() {
 	}' "$1" "$2"
 }
 
-# Page $1 with the outputs in $2/N.printed in the place of its own; an elision keeps as many lines before and after it.
+# Page $1 with the outputs in $2/N.printed instead of its own; an elision keeps as many lines before and after it.
 rewrite_page() {
 	awk -v dir="$2" '
 	function flush(   i, lines, text, printed, dots) {

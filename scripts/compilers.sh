@@ -66,7 +66,7 @@ awk -F, -v tolerance="$tolerance" '
 function apart(a, b) {
 	return a == b ? 0 : (a > b ? a - b : b - a) / (b > 0 ? b : 1e-300)
 }
-function note(kind, difference, what) {
+function record(kind, difference, what) {
 	n[kind]++
 	if (!(difference <= worst[kind])) {
 		worst[kind] = difference
@@ -80,11 +80,11 @@ NR == FNR {
 	builds[$2]
 	next
 }
-{ note("evaluated", apart($5, fitted[$1, $2, $4]), $1 " " $4 ", fitted by " $2 ", evaluated by " $3) }
+{ record("evaluated", apart($5, fitted[$1, $2, $4]), $1 " " $4 ", fitted by " $2 ", evaluated by " $3) }
 END {
 	for (key in fitted) {
 		split(key, k, SUBSEP)
-		note("fitted", apart(fitted[key], least[k[1], k[3]]), k[1] " " k[3] ", " k[2] " above the best build")
+		record("fitted", apart(fitted[key], least[k[1], k[3]]), k[1] " " k[3] ", " k[2] " above the best build")
 	}
 	for (kind in n) {
 		printf "%-10s %6d errors, worst difference %.3g%s\n", kind, n[kind], worst[kind],

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # usage: demo.sh STDFIT
-# Makes three sample materials, fits them with all three NDFs, and shows what was put in beside what came out.
+# Makes three sample materials, fits them with all three NDFs, and shows the true parameters beside the fitted ones.
 set -eu
 
 stdfit=${1:?usage: demo.sh STDFIT}

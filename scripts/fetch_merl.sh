@@ -134,7 +134,7 @@ attempt() {
 	esac
 }
 
-# Gets $1 into $2, $3 bytes at most, with as many attempts as bring something. Sets $end and $why as attempt() does,
+# Gets $1 into $2, $3 bytes at most, and tries again as long as an attempt gets further. Sets $end and $why as attempt() does,
 # and $progress to yes if there was any.
 get() {
 	progress=no failures=0 restarted=no

@@ -170,7 +170,7 @@ set title "G_1, over the hemisphere"
 set yrange [0:0.6]
 plot for [i = 1:4] file using 1:(where(2, word(gammas, i), $5)) lw 2 \
 	lc rgb gamma_hue(i) title gamma_name(word(gammas, i))
-set title "energy balance"
+set title "energy conservation"
 set key at screen 0.89, 0.85 left top
 set yrange [0:2]
 plot for [i = 1:4] file using 1:(where(2, word(gammas, i), $6)) lw 2 \

@@ -46,7 +46,7 @@ fit() {
 	[ -s "$file" ] || { say 'nothing was fitted'; exit 1; }
 }
 
-# The paper takes low with the V-groove G; here it is fitted with Smith's G, too.
+# The paper uses low with the V-groove G; here it is fitted with Smith's G, too.
 fit_all() {
 	fit "$out/fig11_fits.csv" --ndf std,ggx,beckmann,low "$1"
 	fit "$out/fig11_fits_v_groove.csv" --ndf low --gaf v-groove "$1"
@@ -58,7 +58,7 @@ fit_all() {
 tabulate() {
 	awk -F, '
 	# Takes the first field of the line off; RFC 4180.
-	function take(   field, end) {
+	function next_field(   field, end) {
 		if ($0 !~ /^"/) {
 			end = index($0 ",", ",")
 			field = substr($0, 1, end - 1)
@@ -83,7 +83,7 @@ tabulate() {
 	}
 	{
 		for (k = 1; k <= n_fields; k++)
-			value[header[k]] = take()
+			value[header[k]] = next_field()
 		if (value["error"] !~ /^[0-9]/)
 			next
 		material = value["material"]

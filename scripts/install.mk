@@ -22,7 +22,7 @@ library: $(BUILD)/libstdfit.a $(BUILD)/$(shared)
 $(BUILD)/stdfit.exports: $(library_objects) $(public_headers) scripts/exports.sh
 	$(call quiet,LIST)$(CC) $(ALL_CFLAGS) -E fit/stdfit.h | scripts/exports.sh $(library_objects) >$@.part && mv -f $@.part $@
 
-# -Bsymbolic: the library calls its own functions, whatever a program calls its own.
+# -Bsymbolic: the library calls its own functions even if a program has some of the same name.
 $(BUILD)/$(shared): $(library_objects) $(BUILD)/stdfit.exports
 	@{ echo '{ global:'; sed 's/$$/;/' $(BUILD)/stdfit.exports; echo 'local: *; };'; } >$(BUILD)/stdfit.map
 	$(call quiet,LD)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -shared -Wl,-soname,$(soname) -Wl,-Bsymbolic \
@@ -59,7 +59,7 @@ uninstall:
 		$(datadir)/bash-completion/completions/stdfit $(datadir)/zsh/site-functions/_stdfit,"$(DESTDIR)$(f)")
 	[ ! -d "$(DESTDIR)$(includedir)/stdfit" ] || rmdir --ignore-fail-on-non-empty "$(DESTDIR)$(includedir)/stdfit"
 
-# Builds and tests by itself. Only what belongs to the project: measured data and tables may lie beside it.
+# The archive builds and tests on its own. It holds the files of the project alone: measured data may be in the same folder.
 dist_files := .ci .clang-format .clang-tidy .cppcheck .editorconfig .gitignore CITATION.cff CONTRIBUTING.md LICENSE \
 	Makefile NEWS.md README.md \
 	$(sort $(foreach f,$(folders),$(firstword $(subst /, ,$(f))))) docs scripts tests

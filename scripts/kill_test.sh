@@ -54,7 +54,7 @@ while [ "$n" -lt "$kills" ]; do
 		"$stdfit" files $fit --resume -o cut.csv 2>/dev/null
 	code=$?
 	if [ "$code" -eq 0 ]; then
-		# Through before it could be killed.
+		# It ended before it could be killed.
 		ends=$((ends + 1)) length=$((length * 3 / 4 + 1))
 		without_seconds cut.csv | cmp -s - whole || fail 'the table differs'
 		rm -f cut.csv cut.csv~

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # usage: valgrind.sh STDFIT
-# Runs a few commands under valgrind, small ones, for it is slow. Fails at the first access of memory that is none or not
-# set, and at memory that is still there at the end, lost or not; only the OpenMP runtime may keep some.
+# Runs a few small commands under valgrind, which is slow. Fails at the first invalid or uninitialised access, and if
+# memory is not freed at the end, even if it is still reachable; only the OpenMP runtime may keep some.
 set -eu
 
 stdfit=$(cd "$(dirname "${1:?usage: valgrind.sh STDFIT}")" && pwd)/$(basename "$1")

@@ -249,7 +249,7 @@ static void a_fit_on_a_small_stack_recovers_its_parameters(void **state)
 static void a_child_can_fit_on_one_thread(void **state)
 {
 	struct stdfit_options options = ggx_options();
-	int status;
+	int status = -1;
 
 	(void)state;
 	options.threads = 2; /* so that the parent has a team of threads */

@@ -20,16 +20,15 @@ const char *stdfit_status_text(int status)
 	return status < STDFIT_OK || status > STDFIT_INTERRUPTED ? "unknown status" : status_str((enum status)status);
 }
 
-enum stdfit_status api_fail(struct stdfit_error *error, enum status status, const char *format, ...)
+void api_explain(struct stdfit_error *error, const char *format, ...)
 {
-	if (error) {
-		va_list list;
+	va_list list;
 
-		va_start(list, format);
-		vsnprintf(error->text, sizeof error->text, format, list);
-		va_end(list);
-	}
-	return (enum stdfit_status)status;
+	if (!error)
+		return;
+	va_start(list, format);
+	vsnprintf(error->text, sizeof error->text, format, list);
+	va_end(list);
 }
 
 enum stdfit_status api_end(struct stdfit_error *error, enum status status, const struct error *why)

@@ -20,9 +20,10 @@ struct stdfit_measurement {
 	struct measurement grid;
 };
 
-/* api_fail - a failure with its text. */
-enum stdfit_status api_fail(struct stdfit_error *error, enum status status, const char *format, ...)
-	__attribute__((format(printf, 3, 4)));
+/* api_explain - the text of a failure; error may be NULL. */
+void api_explain(struct stdfit_error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* api_fail - a failure with its text; its value is `status`, which static analysis can see because this is a macro. */
+#define api_fail(error, status, ...) (api_explain(error, __VA_ARGS__), (enum stdfit_status)(status))
 /* api_end - the public form of an internal end; `why` may be empty. */
 enum stdfit_status api_end(struct stdfit_error *error, enum status status, const struct error *why);
 

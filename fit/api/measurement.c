@@ -12,7 +12,7 @@ static enum stdfit_status allocate(stdfit_measurement **measurement, struct stdf
 	if (!measurement)
 		return api_fail(error, STATUS_DOMAIN, "measurement is NULL");
 	*measurement = calloc(1, sizeof **measurement);
-	return *measurement ? STDFIT_OK : api_end(error, STATUS_NO_MEMORY, NULL);
+	return *measurement ? STDFIT_OK : api_fail(error, STATUS_NO_MEMORY, "%s", status_str(STATUS_NO_MEMORY));
 }
 
 static enum stdfit_status give_up(stdfit_measurement **measurement, enum stdfit_status status)

@@ -90,9 +90,10 @@ enum stdfit_status stdfit_fresnel(const char *fresnel, double cos_d, double n, d
 
 	if (status == STDFIT_OK)
 		status = check_index(form, n, k, error);
-	if (status == STDFIT_OK && (!F || !(cos_d >= 0 && cos_d <= 1)))
-		status = api_fail(error, STATUS_DOMAIN, "expected cos_d in [0, 1] and room for F, found %g", cos_d);
-	if (status == STDFIT_OK)
-		*F = fresnel_F(form, cos_d, n, k);
-	return status;
+	if (status != STDFIT_OK)
+		return status;
+	if (!F || !(cos_d >= 0 && cos_d <= 1))
+		return api_fail(error, STATUS_DOMAIN, "expected cos_d in [0, 1] and room for F, found %g", cos_d);
+	*F = fresnel_F(form, cos_d, n, k);
+	return STDFIT_OK;
 }

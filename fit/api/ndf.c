@@ -11,7 +11,7 @@ static enum stdfit_status allocate(stdfit_ndf **ndf, struct stdfit_error *error)
 	if (!ndf)
 		return api_fail(error, STATUS_DOMAIN, "ndf is NULL");
 	*ndf = calloc(1, sizeof **ndf);
-	return *ndf ? STDFIT_OK : api_end(error, STATUS_NO_MEMORY, NULL);
+	return *ndf ? STDFIT_OK : api_fail(error, STATUS_NO_MEMORY, "%s", status_str(STATUS_NO_MEMORY));
 }
 
 static enum stdfit_status give_up(stdfit_ndf **ndf, enum stdfit_status status)
@@ -174,7 +174,7 @@ enum stdfit_status stdfit_ndf_G(const stdfit_ndf *ndf, const char *gaf, size_t n
 				double *G, struct stdfit_error *error)
 {
 	const struct ndf *inner = NULL;
-	enum gaf form;
+	enum gaf form = GAF_UNCORRELATED;
 	enum stdfit_status status = api_class_ndf(ndf, &inner, error);
 
 	if (status == STDFIT_OK)
@@ -277,7 +277,7 @@ enum stdfit_status stdfit_ndf_weight(const stdfit_ndf *ndf, const char *gaf, con
 				     struct stdfit_error *error)
 {
 	const struct ndf *inner = NULL;
-	enum gaf form;
+	enum gaf form = GAF_UNCORRELATED;
 	enum stdfit_status status = api_class_ndf(ndf, &inner, error);
 
 	if (status == STDFIT_OK)

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The number before the next `between` or the end; *text then stands behind that, or is NULL at the end. */
+/* The number before the next `between` or the end; *text then points behind that, or is NULL at the end. */
 static bool next_number(const char **text, char between, double *x)
 {
 	char word[CSV_NUMBER_SIZE];
@@ -29,7 +29,7 @@ static bool parse_range(const char *text, struct angles *angles)
 	for (int i = 0; i < 3; i++)
 		if (!text || !next_number(&text, ':', &x[i]))
 			return false;
-	/* A step that the rounding of its decimals leaves short of the end still ends there. */
+	/* If decimal rounding leaves the last step just short of the end, the end is included. */
 	const double steps = floor((x[1] - x[0]) / x[2] * (1 + 1e-12) + 1e-9);
 	if (text || !(x[2] > 0) || !(steps >= 0 && steps < ANGLES_MAX))
 		return false;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* command - what `stdfit` can do, and how it ends. */
+/* command - the commands of `stdfit`, and its exit codes. */
 #ifndef COMMAND_H
 #define COMMAND_H
 

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* What can stand behind an option. */
+/* What can follow an option. */
 enum value { VALUE_NONE, VALUE_CHOICE, VALUE_LIST, VALUE_FILE, VALUE_OTHER, VALUE_COUNT };
 
 static enum value value_of(const struct option_spec *spec)
@@ -38,7 +38,7 @@ static void bash_pattern(FILE *file, const struct option_spec *spec)
 	fprintf(file, "--%s", spec->name);
 }
 
-/* One branch for all options of a kind of which there is nothing more to say. */
+/* One branch for all options of a kind whose completion depends on the kind alone. */
 static void bash_branch(FILE *file, enum command c, enum value value, const char *what)
 {
 	bool any = false;

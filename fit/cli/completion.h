@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* completion - what shells need to complete command lines of stdfit, made from the tables that parsing and --help use.
- * Written by hand: no library knows these tables, and the options stand in one place only. */
+/* completion - shell scripts that complete command lines of stdfit, made from the tables that parsing and --help use.
+ * Written by hand: no library knows these tables, and each option is defined only once. */
 #ifndef COMPLETION_H
 #define COMPLETION_H
 

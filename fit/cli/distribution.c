@@ -15,7 +15,7 @@ static bool given(const char *word)
 	return word && *word;
 }
 
-/* A number from a word; `otherwise` where there is none; NaN where the word is no number, told in `error`. */
+/* A number from a word; `otherwise` where there is none; NaN where the word is no number, with the reason in `error`. */
 static enum status number(const char *what, const char *word, double otherwise, double *value, struct error *error)
 {
 	char shown[TEXT_QUOTE_SIZE];
@@ -51,7 +51,7 @@ static enum status does_not_take(const char *name, struct error *error)
 	return error_set(error, STATUS_DOMAIN, "%s does not take these parameters", name);
 }
 
-/* Why a class does not take parameters, value[i] for ndf_param_at(class, i); NaN: not looked at. */
+/* Checks the parameters of a class, value[i] for ndf_param_at(class, i); NaN: not checked. */
 static enum status refuse_params(const struct ndf_class *class, const double value[], struct error *error)
 {
 	for (int i = 0; i < NDF_PARAMS_MAX && ndf_param_at(class, i); i++) {
@@ -156,7 +156,7 @@ static enum status refuse_words(const struct ndf_class *class, double sigma_x, d
 {
 	const double sigma = sigma_x >= NDF_SIGMA_MIN && sigma_x <= NDF_SIGMA_MAX ? sigma_y : sigma_x;
 	double value[NDF_PARAMS_MAX] = {NAN, NAN, NAN};
-	/* The second parameter has the domain of gamma, under whatever name. */
+	/* The second parameter has the domain of gamma, whatever its name. */
 	for (int i = 0; ndf_param_at(class, i); i++)
 		value[i] = ndf_param_at(class, i)->role == NDF_ROLE_SIGMA ? sigma : i == 1 ? gamma : NAN;
 	return refuse_params(class, value, error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* distribution - an NDF as it is described by words: of a command line, or of a row of a table. */
+/* distribution - an NDF described by text: on a command line, or in a row of a table. */
 #ifndef DISTRIBUTION_H
 #define DISTRIBUTION_H
 
@@ -14,7 +14,7 @@ struct distribution_words {
 	const char *sigma, *sigma_y; /* roughness; sigma_y: along y, if another */
 	const char *gamma;
 	const char *
-		params; /* name=value;... for what sigma and gamma do not say: x of t-family; B and C of low, in place of
+		params; /* name=value;... for what sigma and gamma do not say: x of t-family; B and C of low, instead of
 			     * sigma and gamma; D0 to D90 of pl at the nodes of MERL's theta_h (`bins` node) and at the horizon;
 			     * alpha_x, alpha_y and theta_x, theta_y, theta_z (degrees, 0 if not given) of the ellipsoid */
 	const char *lambda; /* form of Lambda */
@@ -35,7 +35,7 @@ MUST_CHECK enum status distribution_make(const struct distribution_words *words,
 					 struct error *error);
 void distribution_free(struct distribution *distribution);
 
-/* As the functions of ndf.h, ndf_slopes.h and vndf.h, and what ellipsoid.h has of them. NaN where there is none: P2 of
+/* The same functions as in ndf.h, ndf_slopes.h, vndf.h and ellipsoid.h. NaN where one is not defined: P2 of
  * pl, and of the ellipsoid, whose Lambda is that of its Smith masking, G1 not bounded. */
 double distribution_D(const struct distribution *distribution, struct vec3 m);
 double distribution_P22(const struct distribution *distribution, double p, double q);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/cli/files.h"
 #include "data_readers/text_quote.h"
-#include "fit/cli/report.h"
+#include "fit/cli/messages.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -46,8 +46,8 @@ static int id_order(const void *a, const void *b)
 	return order ? order : (x->inode > y->inode) - (x->inode < y->inode);
 }
 
-/* The directories that a walk has seen: links can lead to the same one in more ways than there is time to go. A hash
- * table, of a power of two slots, at least half of them free (inode 0). */
+/* The directories that a walk has seen: links can lead to the same one in more ways than could ever be followed. A hash
+ * table, whose size is a power of two, at least half of it free (inode 0). */
 struct seen {
 	struct id *entry;
 	size_t n, capacity;
@@ -77,8 +77,8 @@ static bool seen_grow(struct seen *seen)
 	return true;
 }
 
-/* Notes a directory; 1 if it is new, 0 if it was seen before, -1 when out of memory. */
-static int seen_note(struct seen *seen, const struct stat *info)
+/* Records a directory; 1 if it is new, 0 if it was seen before, -1 when out of memory. */
+static int seen_add(struct seen *seen, const struct stat *info)
 {
 	const struct id id = {info->st_dev, info->st_ino};
 	if (2 * seen->n >= seen->capacity && !seen_grow(seen))
@@ -98,14 +98,14 @@ static void cannot_read(const char *path, const char *problem)
 	report_error("cannot read '%s': %s", name, problem);
 }
 
-/* struct walk - through one directory and, perhaps, those below it. The C library's fts would go the links of a web of
- * directories in every order, and crash when it gets no memory. */
+/* struct walk - through one directory and, perhaps, those below it. The C library's fts would follow the links of a web of
+ * directories in every order, and crash when out of memory. */
 struct walk {
 	struct files *files;
 	bool recursive;
 	const atomic_bool *cancel;
 	struct seen seen;
-	int problems; /* told already; what is beside them is taken all the same */
+	int problems; /* already reported; the walk goes on */
 };
 
 static int name_order(const struct dirent **a, const struct dirent **b)
@@ -129,7 +129,7 @@ static char *join(const char *directory, const char *name)
 
 static bool walk_directory(struct walk *walk, const char *path);
 
-/* Takes what has this name in a directory, or goes into it. False when out of memory. */
+/* Adds the file of this name in a directory, or walks the directory. False when out of memory. */
 static bool walk_entry(struct walk *walk, const char *path, const char *name)
 {
 	struct stat info;
@@ -137,7 +137,7 @@ static bool walk_entry(struct walk *walk, const char *path, const char *name)
 		return true;
 	const bool known = !stat(path, &info);
 	if (known && S_ISDIR(info.st_mode)) {
-		const int is_new = walk->recursive ? seen_note(&walk->seen, &info) : 0;
+		const int is_new = walk->recursive ? seen_add(&walk->seen, &info) : 0;
 		return is_new > 0 ? walk_directory(walk, path) : is_new == 0;
 	}
 	if (is_material(name))
@@ -176,7 +176,7 @@ static int add_directory(struct files *files, const char *path, const struct sta
 {
 	const size_t before = files->n;
 	struct walk walk = {.files = files, .recursive = recursive, .cancel = cancel};
-	const bool stored = seen_note(&walk.seen, info) >= 0 && walk_directory(&walk, path);
+	const bool stored = seen_add(&walk.seen, info) >= 0 && walk_directory(&walk, path);
 	free(walk.seen.entry);
 	if (stored && !walk.problems && files->n == before && !*cancel) {
 		cannot_read(path, "no *.binary in this directory");
@@ -197,7 +197,7 @@ static int indexed_path_order(const void *a, const void *b)
 	return order ? order : (x->index > y->index) - (x->index < y->index);
 }
 
-/* Leaves the first of equal paths. */
+/* Keeps the first of equal paths. */
 static bool drop_repeated(struct files *files)
 {
 	struct indexed_path *indexed = calloc(files->n + 1, sizeof(*indexed));
@@ -284,7 +284,7 @@ static bool find_id(const char *path, struct id *id, bool *regular)
 	return true;
 }
 
-/* What stands behind the last slash, and in `directory` what stands before it. */
+/* Returns the part after the last slash; the part before it goes to `directory`. */
 static const char *split(const char *path, char directory[PATH_MAX])
 {
 	const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;

@@ -12,15 +12,15 @@ struct files {
 	size_t n, capacity;
 };
 
-/* files_collect - takes every path that is no directory as it is, and for a directory its *.binary in the order of
- * their names; `recursive` takes those below it too, each directory once, by whatever links it can be reached. Hidden
- * files and directories are left alone. A directory that cannot be read is told on standard error; what is beside it is
- * taken all the same. Setting *cancel ends it with what was found so far.
- * Returns how many of the paths gave nothing or not all, each told; -1 when out of memory, told as well. */
+/* files_collect - the files that the paths stand for. A path that is not a directory stands for itself; a directory for
+ * its *.binary in the order of their names, with `recursive` also for those in the directories below, each of which is
+ * read once, however many links lead to it. Hidden files and directories are skipped. A directory that cannot be read is
+ * reported on standard error, and the collection goes on. Setting *cancel ends it with what was found so far.
+ * Returns how many of the paths gave nothing or not all, each reported; -1 when out of memory, reported as well. */
 int files_collect(struct files *files, char *const *path, int n_paths, bool recursive, const atomic_bool *cancel);
 void files_free(struct files *files);
 
-/* files_same - whether two names are, or would when written to be, one regular file. */
+/* files_same - whether two names are one regular file, or would be one once written. */
 bool files_same(const char *a, const char *b);
 /* files_has - whether `path` is one of the files, by whatever name. */
 bool files_has(const struct files *files, const char *path);

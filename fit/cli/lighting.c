@@ -67,7 +67,7 @@ enum status lighting_make(const struct options *options, struct environment *env
 {
 	enum status status = STATUS_OK;
 	*environment = (struct environment){0};
-	/* Lights alone take the place of the default. */
+	/* Lights without --environment replace the default environment. */
 	if (options_given(options, "environment") || !options->light)
 		status = environment_named(options->environment, environment);
 	if (status == STATUS_DOMAIN)

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/cli/manual.h"
 #include "fit/cli/option_value.h"
+#include "fit/cli/text_stream.h"
 
 #include <stdlib.h>
 
-/* Of the text below; a page without one is faulty, and the day it is built would make each build another. */
+/* The date of the text below. A page needs one; the day of the build would make every build differ. */
 #define MANUAL_DATE "2026-11-22"
 
 static void write_character(FILE *file, char c)
@@ -33,8 +34,8 @@ static void write_character(FILE *file, char c)
 	}
 }
 
-/* Text as it is, whatever roff would make of it. Its lines are filled, but for those that begin with a space; an empty
- * one ends a paragraph. The source's own lines are kept short. */
+/* Text with all that roff would interpret escaped. Lines are filled, except those that begin with a space; an empty line
+ * ends a paragraph. The lines of the output are kept short. */
 static void write_text(FILE *file, const char *text)
 {
 	enum { FOLD = 55 };
@@ -78,8 +79,7 @@ static void write_usage(FILE *file, enum command c)
 
 static void write_option(FILE *file, const struct options *defaults, const struct option_spec *spec)
 {
-	char *text = NULL;
-	size_t size;
+	struct text_stream stream;
 	fputs(".TP\n", file);
 	if (spec->letter) {
 		const char letter[] = {'-', (char)spec->letter, '\0'};
@@ -94,10 +94,10 @@ static void write_option(FILE *file, const struct options *defaults, const struc
 		write_in(file, 'I', spec->argument);
 	}
 	fputc('\n', file);
-	FILE *memory = open_memstream(&text, &size);
-	if (memory) {
-		option_describe(memory, defaults, spec);
-		if (!fclose(memory) && text)
+	if (text_stream_open(&stream)) {
+		option_describe(stream.file, defaults, spec);
+		char *text = text_stream_close(&stream);
+		if (text)
 			write_text(file, text);
 		free(text);
 	}

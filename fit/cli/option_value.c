@@ -176,7 +176,7 @@ const struct option_spec option_specs[] = {
 };
 
 _Static_assert(sizeof option_specs / sizeof *option_specs <= OPTIONS_MAX,
-	       "struct options.given has a place per option");
+	       "struct options.given has an entry per option");
 
 const char *option_choice(enum option_kind kind, int i)
 {
@@ -309,8 +309,8 @@ static enum status parse_phi(const char *text, int *value, struct error *error)
 	return STATUS_OK;
 }
 
-/* Copies the part of a list before the next comma; returns what stands behind that, NULL at the end. What does not fit is
- * no item of any list and leaves "". */
+/* Copies the part of a list before the next comma; returns what follows it, NULL at the end. A part that does not fit is
+ * no item of any list and gives "". */
 static const char *next_item(const char *text, char *item, size_t size)
 {
 	const size_t length = strcspn(text, ",");

@@ -63,7 +63,7 @@ MUST_CHECK enum status option_parse(struct options *options, const struct option
 bool option_applies(const struct option_spec *spec, enum command command);
 /* option_describe - the option's help: what it does, the names it takes, its default, if any. */
 void option_describe(FILE *file, const struct options *defaults, const struct option_spec *spec);
-/* option_write - the value as the option would take it; "yes" and "no" for one without an argument; "free" for a number
+/* option_write - the value as it would be written on the command line; "yes" and "no" for one without an argument; "free" for a number
  * that is not fixed. */
 void option_write(FILE *file, const struct options *options, const struct option_spec *spec);
 

@@ -2,8 +2,10 @@
 #include "fit/cli/options.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/files.h"
+#include "fit/cli/messages.h"
 #include "fit/cli/option_value.h"
 #include "fit/cli/report.h"
+#include "fit/cli/text_stream.h"
 #include "fit/error/objective.h"
 #include "fit/results/csv.h"
 
@@ -112,25 +114,18 @@ static bool is_recorded(const struct options *options, const struct option_spec 
 
 char *options_text(const struct options *options)
 {
-	char *text = NULL;
-	size_t size;
-	FILE *file = open_memstream(&text, &size);
-	if (!file)
+	struct text_stream stream;
+	if (!text_stream_open(&stream))
 		return NULL;
 	const char *between = "";
 	for (const struct option_spec *spec = option_specs; spec->name; spec++) {
 		if (!is_recorded(options, spec))
 			continue;
-		fprintf(file, "%s%s=", between, spec->name);
-		option_write(file, options, spec);
+		fprintf(stream.file, "%s%s=", between, spec->name);
+		option_write(stream.file, options, spec);
 		between = " ";
 	}
-	const bool failed = ferror(file);
-	if (fclose(file) || failed) {
-		free(text);
-		return NULL;
-	}
-	return text;
+	return text_stream_close(&stream);
 }
 
 /* Help */
@@ -338,8 +333,8 @@ int options_check_fit(const struct options *options)
 	return -1;
 }
 
-/* An output must not take the place of what is read, or of the other one. compare and merge keep a table that they replace
- * beside it. What a directory holds, fit and compare look at. */
+/* An output must not replace an input or the other output. compare and merge keep the table that they replace beside it.
+ * fit and compare check the files of a directory themselves. */
 static int check_outputs(const struct options *options)
 {
 	const char *const output[] = {options->output, options->trace};
@@ -409,7 +404,7 @@ const char *options_given_beside(const struct options *options, const char *cons
 	return NULL;
 }
 
-/* An option that says something about a term that the model has not. */
+/* An option for a term that the model does not have. */
 static int check_model(const struct options *options)
 {
 	static const char *const specular[] = {"sigma", "gamma", "ior", "k", "ndf", "gaf", "fresnel"};
@@ -466,12 +461,12 @@ enum show options_show(const struct options *options)
 int options_end(const struct options *options, enum status status, const struct error *error, struct csv_table *table,
 		report_readable *readable)
 {
-	if (!status)
+	if (status == STATUS_OK)
 		report_output(table, options_show(options), readable);
 	else if (status != STATUS_INTERRUPTED)
 		report_error("%s", error->text);
 	csv_table_free(table);
 	if (*options->cancel)
 		return EXIT_INTERRUPTED;
-	return status ? EXIT_FAILED : EXIT_DONE;
+	return status != STATUS_OK ? EXIT_FAILED : EXIT_DONE;
 }

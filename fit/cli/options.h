@@ -24,7 +24,7 @@ struct options {
 	double within; /* percent; NaN: every NDF as it is */
 	/* A model, for eval and synth; its sigma, gamma and ior are those of `fit`. */
 	double kd[3], ks[3], k;
-	const char *from; /* a result table to take the model from */
+	const char *from; /* the result table that has the model */
 	int row;          /* its row, from 1; 0: the one of this material and NDF */
 	enum export_format format;
 	/* A distribution, for ndf and sample, in words: distribution.h. */
@@ -55,10 +55,10 @@ struct options {
 
 /* options_parse - reads a command's arguments into *options; argv is reordered and stays borrowed.
  * Returns -1 to go on, or the exit code to end with: help was asked for (and printed), or something was wrong (and
- * told). */
+ * reported). */
 MUST_CHECK int options_parse(struct options *options, enum command command, int argc, char **argv, atomic_bool *cancel);
 
-/* options_given - whether the option of this long name stands on the command line. */
+/* options_given - whether the option of this long name is on the command line. */
 bool options_given(const struct options *options, const char *name);
 /* options_given_beside - the name of some given option that is not among `expected`, which ends with NULL; NULL: none.
  */
@@ -69,22 +69,22 @@ const char *options_given_beside(const struct options *options, const char *cons
 char *options_text(const struct options *options);
 
 /* options_model - the model that the options of eval and synth describe, into *model.
- * Returns -1, or EXIT_USAGE when they describe none (told on standard error). */
+ * Returns -1, or EXIT_USAGE when they describe none (reported on standard error). */
 MUST_CHECK int options_model(const struct options *options, struct cook_torrance *model);
 
-/* options_check_fit - whether the options of a fit go together. Returns -1, or EXIT_USAGE, told. */
+/* options_check_fit - whether the options of a fit go together. Returns -1, or EXIT_USAGE with a message on standard error. */
 MUST_CHECK int options_check_fit(const struct options *options);
 
 /* options_show - what a command prints on standard output: JSON if asked for, readable text if asked for or on a
  * terminal, else CSV. With -o only a terminal or --table gets anything. */
 enum show options_show(const struct options *options);
 
-/* options_end - the last of a command that makes one table: prints it as `all` says for JSON and readable text, or says
- * what failed, and frees it. Returns the exit code. */
+/* options_end - ends a command that makes one table: prints the table as options_show() says, `readable` printing the
+ * readable text, or reports what failed. Frees the table and returns the exit code. */
 int options_end(const struct options *options, enum status status, const struct error *error, struct csv_table *table,
 		report_readable *readable);
 
-/* options_usage - tells on standard error what is wrong with the command line. Returns EXIT_USAGE. */
+/* options_usage - reports on standard error what is wrong with the command line. Returns EXIT_USAGE. */
 int options_usage(enum command command, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* struct command_text - a command's name and its help. */
@@ -94,7 +94,7 @@ struct command_text {
 /* options_command - of a command below COMMAND_COUNT. */
 const struct command_text *options_command(enum command command);
 
-/* options_default - what a command starts from. */
+/* options_default - the default options of a command. */
 struct options options_default(enum command command);
 
 /* options_overview - the help of the program as a whole, on standard output. */

@@ -58,7 +58,7 @@ enum status output_directory_spares(const char *directory, const char *name, cha
 		    : STATUS_OK;
 }
 
-const char *output_place_trouble(int at, const char *name)
+const char *output_file_problem(int at, const char *name)
 {
 	struct stat info;
 	if (fstatat(at, name, &info, 0) || S_ISREG(info.st_mode))
@@ -74,16 +74,16 @@ enum status output_directory_path(const char *directory, const char *name, char 
 		*path = NULL;
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	}
-	const char *trouble = output_place_trouble(AT_FDCWD, *path);
-	if (!trouble)
+	const char *problem = output_file_problem(AT_FDCWD, *path);
+	if (!problem)
 		return STATUS_OK;
 	text_quote(*path, shown, sizeof shown);
 	free(*path);
 	*path = NULL;
-	return error_set(error, STATUS_IO, "cannot write '%s': %s", shown, trouble);
+	return error_set(error, STATUS_IO, "cannot write '%s': %s", shown, problem);
 }
 
-enum status output_directory_takes(const char *directory, const char *name, struct error *error)
+enum status output_directory_accepts(const char *directory, const char *name, struct error *error)
 {
 	char *path;
 	const enum status status = output_directory_path(directory, name, &path, error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* progress - one line on standard error that says how far a long run is. */
+/* progress - one line on standard error that reports the progress of a long run. */
 #ifndef PROGRESS_H
 #define PROGRESS_H
 

@@ -4,19 +4,8 @@
 #include "fit/results/result.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-void report_error(const char *format, ...)
-{
-	va_list list;
-	va_start(list, format);
-	fputs("stdfit: ", stderr);
-	vfprintf(stderr, format, list);
-	fputc('\n', stderr);
-	va_end(list);
-}
 
 /* JSON */
 
@@ -66,7 +55,7 @@ void report_json(FILE *file, const struct csv_table *table)
 
 /* Readable tables */
 
-/* Columns that text takes on a terminal, if each character takes one. */
+/* Columns that a text occupies on a terminal, one per character. */
 static int text_width(const char *text)
 {
 	int width = 0;
@@ -86,7 +75,7 @@ static void print_padded(FILE *file, const char *text, int width, bool right)
 
 enum { SHOWN_SIZE = 160 };
 
-/* A cell as people want it. */
+/* A cell in readable form. */
 static const char *shown_cell(char text[SHOWN_SIZE], const char *cell, bool number)
 {
 	double x = NAN;

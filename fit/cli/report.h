@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* report - what the commands print: error messages, tables to read, and tables as JSON. */
+/* report - how the commands print result tables: as JSON, or as readable text. */
 #ifndef REPORT_H
 #define REPORT_H
 
 #include "fit/results/csv.h"
-
-/* report_error - "stdfit: <text>" and a newline on standard error. */
-void report_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* report_json - the table as an array of objects: numbers as numbers, empty cells as null, inf as "inf";
  * bytes that are no printable UTF-8 as U+FFFD. */

@@ -3,6 +3,7 @@
  * of Lambda beside each other. */
 #include "data_readers/atomic_file.h"
 #include "data_readers/merl.h"
+#include "fit/cli/messages.h"
 #include "fit/cli/options.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit compare - the NDFs side by side: errors per material, and what they come to in all. */
 #include "data_readers/text_quote.h"
+#include "fit/cli/messages.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
 #include "fit/results/store.h"

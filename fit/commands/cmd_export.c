@@ -2,7 +2,7 @@
 /* stdfit export - a model in the form of another program. */
 #include "data_readers/atomic_file.h"
 #include "data_readers/merl.h"
-#include "fit/cli/report.h"
+#include "fit/cli/messages.h"
 #include "fit/commands/commands.h"
 #include "fit/sources/model_source.h"
 

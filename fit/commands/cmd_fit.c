@@ -2,6 +2,7 @@
 /* stdfit fit - MERL files to a result table. */
 #include "data_readers/atomic_file.h"
 #include "data_readers/text_quote.h"
+#include "fit/cli/messages.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
 #include "fit/sources/batch.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit info - what is in a MERL file. */
 #include "data_readers/merl.h"
+#include "fit/cli/messages.h"
 #include "fit/cli/options.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"

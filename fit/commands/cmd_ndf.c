@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit ndf - the functions of a distribution as a table over angles, or of one distribution after another. */
 #include "fit/cli/angles.h"
-#include "fit/cli/report.h"
+#include "fit/cli/messages.h"
 #include "fit/commands/commands.h"
 #include "fit/sources/distribution_source.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit plot - fits, and the course of searches, as pictures by gnuplot. */
 #include "data_readers/regular_file.h"
+#include "fit/cli/messages.h"
 #include "fit/cli/output_directory.h"
 #include "fit/cli/progress.h"
 #include "fit/commands/commands.h"

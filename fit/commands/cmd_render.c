@@ -4,6 +4,7 @@
 #include "data_readers/text_quote.h"
 #include "fit/cli/files.h"
 #include "fit/cli/lighting.h"
+#include "fit/cli/messages.h"
 #include "fit/cli/progress.h"
 #include "fit/commands/commands.h"
 #include "fit/render/pictures.h"

@@ -3,6 +3,7 @@
  * directory beside it. */
 #include "data_readers/atomic_file.h"
 #include "fit/cli/lighting.h"
+#include "fit/cli/messages.h"
 #include "fit/cli/output_directory.h"
 #include "fit/cli/progress.h"
 #include "fit/commands/commands.h"
@@ -295,7 +296,7 @@ int cmd_report(int argc, char **argv, atomic_bool *cancel)
 	if (status == STATUS_DOMAIN)
 		return options_usage(COMMAND_REPORT, "%s", error.text);
 	if (status == STATUS_OK)
-		status = output_directory_takes(options.output, "index.html", &error);
+		status = output_directory_accepts(options.output, "index.html", &error);
 	if (status != STATUS_OK) {
 		report_error("%s", error.text);
 		return EXIT_FAILED;

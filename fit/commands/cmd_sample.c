@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit sample - random normals of a distribution, and the directions into which they reflect. */
-#include "fit/cli/report.h"
 #include "fit/commands/commands.h"
 #include "fit/sources/distribution_source.h"
 

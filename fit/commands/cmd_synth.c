@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit synth - a MERL file of a model, as an ideal measurement would give it, or a noisy one. */
 #include "data_readers/merl.h"
+#include "fit/cli/messages.h"
 #include "fit/cli/options.h"
-#include "fit/cli/report.h"
 #include "fit/commands/commands.h"
 #include "fit/error/model_table.h"
 

@@ -2,8 +2,8 @@
 /* stdfit - the program: finds the command, catches signals, ends. */
 #include "fit/cli/completion.h"
 #include "fit/cli/manual.h"
+#include "fit/cli/messages.h"
 #include "fit/cli/options.h"
-#include "fit/cli/report.h"
 #include "fit/commands/commands.h"
 
 #include <errno.h>

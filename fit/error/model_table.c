@@ -26,7 +26,7 @@ enum status model_table(const struct cook_torrance *model, enum bins bins, int n
 	const struct entries entries = entries_make(bins, n_phi_d);
 	const double min_cos = max_theta_cos(max_theta);
 	const enum status status = measurement_alloc(measurement, n_phi_d);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 #pragma omp parallel for collapse(2) schedule(dynamic, 64) num_threads(threads)
 	for (int i = 0; i < MERL_THETA_H; i++)

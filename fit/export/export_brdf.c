@@ -416,7 +416,7 @@ static enum status write_shader(struct glsl *glsl, const struct export *export, 
 	}
 	write_model(glsl, specular);
 	lines(glsl, "\n::end shader\n");
-	if (!status && glsl->out_of_range)
+	if (status == STATUS_OK && glsl->out_of_range)
 		status = error_set(error, STATUS_UNSUPPORTED,
 				   "a constant of the model is out of the range of a shader's float");
 	return status;

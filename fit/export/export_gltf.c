@@ -81,7 +81,7 @@ static enum status gltf_prepare(struct export *export, struct error *error)
 {
 	struct measurement own;
 	const enum status status = substitute_prepare(export, &target, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	if (export_max(export->model.kd) > 1 || export_max(export->model.ks) > 1)
 		return error_set(error, STATUS_UNSUPPORTED,

@@ -21,7 +21,7 @@ static const struct target target = {
 static enum status pbrt_prepare(struct export *export, struct error *error)
 {
 	const enum status status = substitute_prepare(export, &target, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	if (export_max(export->model.kd) > 1)
 		return error_set(error, STATUS_UNSUPPORTED, "pbrt-v4 has no reflectance above 1: kd is up to %.5g",

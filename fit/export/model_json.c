@@ -68,7 +68,7 @@ static enum status read_nodes(const json_t *json, struct model_json *read, struc
 	free(D);
 	if (status == STATUS_NO_MEMORY)
 		return error_set(error, status, "out of memory");
-	if (status)
+	if (status != STATUS_OK)
 		return bad("nodes", "two arrays, theta from 0 to pi/2 and D", error);
 	ndf_from_pwl(&read->model.ndf, read->pwl);
 	return STATUS_OK;
@@ -140,11 +140,11 @@ static enum status read_model(const json_t *json, struct model_json *read, struc
 	if (strcmp(text_of(json, "format"), "stdfit-model-1") != 0)
 		return bad("format", "\"stdfit-model-1\"", error);
 	enum status status = read_rgb(json, "kd", read->model.kd, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = read_rgb(json, "ks", read->model.ks, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = read_ndf(json, read, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = read_terms(json, read, fit, error);
 	return status ? status : read_fitted(json, read, fit, error);
 }

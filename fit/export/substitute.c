@@ -114,7 +114,7 @@ static enum status fit_once(const struct fit_context *context, const struct meas
 	struct fit_result result[FIT_NDFS_MAX];
 	const enum status status = fit_run(context, measurement, fit, result, error);
 	*value = INFINITY;
-	for (int i = 0; i < fit->n_ndf && !status; i++) {
+	for (int i = 0; i < fit->n_ndf && status == STATUS_OK; i++) {
 		if (result[i].error < *value) {
 			*model = result[i].model;
 			*value = result[i].error;
@@ -143,12 +143,12 @@ static enum status scan_blend(const struct fit_context *context, const struct me
 	tried.blend = 0.5;
 	struct fit_options chosen = tried;
 	for (int n = 0; n < fit->n_ndf; n++)
-		for (int i = 1; i < BLEND_SCAN && !status; i++) {
+		for (int i = 1; i < BLEND_SCAN && status == STATUS_OK; i++) {
 			double value;
 			tried.ndf[0] = fit->ndf[n];
 			tried.blend = (double)i / BLEND_SCAN;
 			status = fit_estimate(context, measurement, &tried, &value, NULL);
-			if (!status && value < best) {
+			if (status == STATUS_OK && value < best) {
 				best = value;
 				chosen = tried;
 			}
@@ -164,18 +164,18 @@ static enum status fit_blend(const struct fit_context *context, const struct mea
 	static const double golden = 0.6180339887498949;
 	double best = INFINITY, value[2] = {NAN, NAN};
 	enum status status = scan_blend(context, measurement, fit);
-	if (status)
+	if (status != STATUS_OK)
 		return error_set(error, status, "%s", status_str(status));
 	double low = fit->blend - 1.0 / BLEND_SCAN, high = fit->blend + 1.0 / BLEND_SCAN;
-	for (int i = 0; i < BLEND_STEPS && !status; i++) {
+	for (int i = 0; i < BLEND_STEPS && status == STATUS_OK; i++) {
 		const double at[2] = {high - golden * (high - low), low + golden * (high - low)};
-		for (int side = 0; side < 2 && !status; side++) {
+		for (int side = 0; side < 2 && status == STATUS_OK; side++) {
 			struct cook_torrance tried;
 			if (!isnan(value[side]))
 				continue;
 			fit->blend = at[side];
 			status = fit_once(context, measurement, fit, &tried, &value[side], error);
-			if (!status && value[side] < best) {
+			if (status == STATUS_OK && value[side] < best) {
 				best = value[side];
 				*model = tried;
 			}
@@ -206,19 +206,19 @@ static enum status fit_substitute(struct export *export, const struct target *ta
 	struct fit_context *context = NULL;
 	double value;
 	enum status status = fit_context_new(&context, measurement->n_phi_d, &fit);
-	if (status)
+	if (status != STATUS_OK)
 		return error_set(error, status, "%s", status_str(status));
 	status = fit_once(context, measurement, &fit, &export->model, &value, error);
-	if (!status && target->sigma_max > 0 && export->model.ndf.sigma_x > target->sigma_max) {
+	if (status == STATUS_OK && target->sigma_max > 0 && export->model.ndf.sigma_x > target->sigma_max) {
 		fit.sigma = target->sigma_max;
 		status = fit_once(context, measurement, &fit, &export->model, &value, error);
 	}
-	if (!status && target->gray)
+	if (status == STATUS_OK && target->gray)
 		average_specular(&export->model);
 	*blended = !status && target->blend && !fits_blend(&export->model);
 	if (*blended)
 		status = fit_blend(context, measurement, &fit, &export->model, error);
-	if (!status && target->gray && fit.diffuse && gray_specular(measurement, &fit, &export->model))
+	if (status == STATUS_OK && target->gray && fit.diffuse && gray_specular(measurement, &fit, &export->model))
 		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
 	fit_context_free(context);
 	return status;
@@ -229,7 +229,7 @@ static enum status error_of(const struct export *export, const struct measuremen
 {
 	struct fit_metrics metrics;
 	const enum status status = fit_eval(measurement, model, export->source.fit, &metrics, error);
-	if (!status)
+	if (status == STATUS_OK)
 		*value = metrics.error[export->source.fit->criterion.weight];
 	return status;
 }
@@ -250,9 +250,9 @@ static enum status report_cost(struct export *export, const struct measurement *
 	double before, after;
 	char name[TEXT_QUOTE_SIZE];
 	enum status status = error_of(export, measurement, export->source.model, &before, error);
-	if (!status)
+	if (status == STATUS_OK)
 		status = error_of(export, measurement, &export->model, &after, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	name_data(&export->source, name);
 	snprintf(export->cost, sizeof export->cost,
@@ -301,10 +301,10 @@ enum status substitute_prepare(struct export *export, const struct target *targe
 	bool blended = false;
 	enum status status = measurement ? fit_substitute(export, target, measurement, &blended, error)
 					 : error_set(error, STATUS_NO_MEMORY, "out of memory");
-	if (!status)
+	if (status == STATUS_OK)
 		status = report_cost(export, measurement, error);
 	measurement_free(&own);
-	if (!status)
+	if (status == STATUS_OK)
 		status = check_sigma(export, target, error);
 	snprintf(export->why, sizeof export->why, "approximate: %s has%.200s; %s%s was fitted in its place%s",
 		 target->name, lacks, ndf_name(export->model.ndf.class),

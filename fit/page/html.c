@@ -21,7 +21,7 @@ void html_text(FILE *page, const char *text)
 	}
 }
 
-/* RFC 4648, section 4: three bytes become four characters; = stands for what is missing at the end. */
+/* RFC 4648, section 4: three bytes become four characters; = fills up the end. */
 static void put_base64(FILE *page, const unsigned char *byte, size_t n)
 {
 	static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

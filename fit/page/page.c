@@ -91,7 +91,7 @@ static void put_missing(FILE *page, const char *why)
 
 static void put_top(FILE *page, const struct materials *materials)
 {
-	/* Nothing is fetched from anywhere: what the page needs it has inside. */
+	/* The page contains all it needs and fetches nothing. */
 	fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
 	      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
 	      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none';img-src data:;"

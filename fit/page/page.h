@@ -8,13 +8,13 @@
 
 /* struct page_picture - a picture in a file. */
 struct page_picture {
-	char *path;                /* NULL: there is none, and nothing is shown */
+	char *path;                /* NULL: no picture, nothing is shown */
 	const char *type;          /* "image/png", "image/svg+xml" */
 	bool plot;                 /* drawn on white: turned over where the reader's system is dark */
 	const char *alt, *caption; /* `alt` follows the name of the material, if there is one */
 };
 
-/* struct page - a page under way. */
+/* struct page - a page being written. */
 struct page {
 	FILE *file; /* borrowed */
 	const struct materials *materials;
@@ -22,7 +22,8 @@ struct page {
 };
 
 /* page_begin - head, summary, and the sortable table of all materials. errors: the picture of the sorted errors;
- * missing: why it is missing, NULL if it is not meant to be there. STATUS_NO_MEMORY; STATUS_IO: the picture cannot be read. page_free() is due in any case. */
+ * missing: why it is missing, NULL if none is expected. STATUS_NO_MEMORY; STATUS_IO: the picture cannot be read. Call
+ * page_free() in any case. */
 MUST_CHECK enum status page_begin(struct page *page, FILE *file, const struct materials *materials,
 				  const struct page_picture *errors, const char *missing, struct error *error);
 

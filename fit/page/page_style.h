@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* page_style - how the page of a report looks (CSS), and what it does beyond HTML (a script that it can do without). */
+/* page_style - the style sheet of a report's page, and a script that the page also works without. */
 #ifndef PAGE_STYLE_H
 #define PAGE_STYLE_H
 

@@ -9,7 +9,7 @@
 
 /* report_spheres - a PNG of spheres in the same light: as measured, then as each fit has it, and below each of these its
  * difference from the measured one in false colours.
- * Returns: in picture[] how far each fit's sphere is from the measured one
+ * Returns: in picture[] the error of each fit's sphere against the measured one
  * Errors:  STATUS_UNSUPPORTED: a build without libpng; STATUS_IO, STATUS_NO_MEMORY, STATUS_INTERRUPTED */
 MUST_CHECK enum status report_spheres(const char *path, const struct material_data *data,
 				      const struct environment *environment, const struct options *options,

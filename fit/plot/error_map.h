@@ -12,7 +12,7 @@
 MUST_CHECK enum status error_map_make(const struct measurement *measurement, const struct cook_torrance *model,
 				      const struct fit_options *options, struct metrics_row row[MERL_ROWS]);
 
-/* error_map_error - E of one row alone: 0 where the model is perfect, 1 where a black one would do as well, infinite
+/* error_map_error - E of one row alone: 0 where the model is perfect, 1 where a black model would be as good, infinite
  * where nothing but zeros was measured and the model is not zero; NaN without data. */
 double error_map_error(const struct metrics_row *row);
 

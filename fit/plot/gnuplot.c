@@ -59,7 +59,7 @@ void gnuplot_end(FILE *file)
 	fputs("unset output\n}\n", file);
 }
 
-/* The last line of what gnuplot said. */
+/* The last line that gnuplot printed. */
 static void last_words(FILE *said, char *text, size_t size)
 {
 	char line[256];
@@ -90,7 +90,7 @@ static int wait_for(pid_t pid, const atomic_bool *cancel)
 	return status;
 }
 
-/* Runs gnuplot with these arguments in the directory, its words into `said`. */
+/* Runs gnuplot with these arguments in the directory; what it prints goes to `said`. */
 static enum status run(const char *directory, char *const *argument, FILE *said, const atomic_bool *cancel,
 		       struct error *error)
 {
@@ -128,7 +128,7 @@ static enum status cannot_write(const char *directory, const char *picture, cons
 	return error_set(error, STATUS_IO, "cannot write '%s/%s': %s", shown, picture, why);
 }
 
-/* Whether a picture has its end: gnuplot does not look whether it could write all of it. NULL, or why not. */
+/* Whether a picture has its end: gnuplot does not check that it could write all of it. NULL, or why not. */
 static const char *check_end(int fd)
 {
 	static const char *const end[] = {"IEND\xae\x42\x60\x82", "</svg>\n\n", "</svg>\n"};
@@ -146,8 +146,8 @@ static const char *check_end(int fd)
 	return "gnuplot has not written it as a whole";
 }
 
-/* Puts a picture in its place, or drops it; without an allocation, so that nothing is left in any case. at: the directory,
- * open. */
+/* Renames a finished picture to its name, or removes it. Allocates nothing, so no temporary file is left behind. at: the
+ * open directory. */
 static enum status settle(int at, const char *directory, const char *name, const char *format, const char *part,
 			  bool keep, struct error *error)
 {
@@ -159,7 +159,7 @@ static enum status settle(int at, const char *directory, const char *name, const
 	if (fd >= 0)
 		close(fd);
 	if (keep && !why)
-		why = output_place_trouble(at, picture);
+		why = output_file_problem(at, picture);
 	if (keep && !why && renameat(at, temp, at, picture))
 		why = strerror(errno);
 	if (!keep || why)
@@ -174,7 +174,7 @@ enum status gnuplot_draw(const char *directory, const char *const *name, int n, 
 	char program[] = "gnuplot", defaults[] = "-d", execute[] = "-e";
 	char *argument[SCRIPTS_MAX + 5] = {program, defaults, execute, definition};
 	if (n > SCRIPTS_MAX)
-		return error_set(error, STATUS_UNSUPPORTED, "more pictures than gnuplot_draw() takes at once");
+		return error_set(error, STATUS_UNSUPPORTED, "more pictures than gnuplot_draw() draws at once");
 	snprintf(part, sizeof part, ".stdfit-%ld.tmp", (long)getpid());
 	snprintf(definition, sizeof definition, "part='%s'", part);
 	for (int i = 0; i < n; i++) {
@@ -185,12 +185,12 @@ enum status gnuplot_draw(const char *directory, const char *const *name, int n, 
 	FILE *said = at < 0 ? NULL : tmpfile();
 	enum status status = said ? run(directory, argument, said, cancel, error)
 				  : error_set(error, STATUS_IO, "cannot run gnuplot: %s", strerror(errno));
-	const bool drawn = !status;
+	const bool drawn = status == STATUS_OK;
 	for (int i = 0; i < n && said; i++)
 		for (int f = 0; f < FORMATS; f++) {
 			const enum status settled = settle(at, directory, name[i], formats[f], part, drawn,
-							   drawn && !status ? error : NULL);
-			status = status ? status : settled;
+							   drawn && status == STATUS_OK ? error : NULL);
+			status = status != STATUS_OK ? status : settled;
 		}
 	if (said)
 		fclose(said);

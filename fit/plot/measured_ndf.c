@@ -15,7 +15,7 @@ struct reading {
 	const struct cook_torrance *model;
 	struct entries entries;
 	struct masking masking;
-	struct weighted_value *wish; /* room for one theta_h */
+	struct weighted_value *value; /* room for one theta_h */
 	double min_cos;
 };
 
@@ -31,8 +31,8 @@ static double lobe_per_D(const struct reading *r, struct vec3 wi, struct vec3 wo
 				     masking_at(&r->masking, masking_q(wo)), cosines);
 }
 
-/* The wishes of entry (i, j, k), one a channel; returns how many. */
-static size_t entry_wishes(const struct reading *r, int i, int j, int k, double F, struct weighted_value *wish)
+/* The values of D that entry (i, j, k) gives, one per channel; returns how many. */
+static size_t entry_values(const struct reading *r, int i, int j, int k, double F, struct weighted_value *asked)
 {
 	const struct measurement *measurement = r->measurement;
 	const size_t at = measurement_at(measurement->n_phi_d, i, j, k);
@@ -48,7 +48,7 @@ static size_t entry_wishes(const struct reading *r, int i, int j, int k, double 
 		const double wanted = (double)measurement->value[c][at] - r->model->kd[c] / M_PI;
 
 		if (per_D > 0)
-			wish[n++] = (struct weighted_value){(float)(wanted / per_D), (float)per_D};
+			asked[n++] = (struct weighted_value){(float)(wanted / per_D), (float)per_D};
 	}
 	return n;
 }
@@ -61,9 +61,9 @@ static double read_row(const struct reading *r, int i)
 		const double F = fresnel_F(r->model->fresnel, r->entries.theta[j].cos_d, r->model->n, r->model->k);
 
 		for (int k = 0; k < r->measurement->n_phi_d; k++)
-			n += entry_wishes(r, i, j, k, F, r->wish + n);
+			n += entry_values(r, i, j, k, F, r->value + n);
 	}
-	return weighted_median(r->wish, n, NAN);
+	return weighted_median(r->value, n, NAN);
 }
 
 static enum status read_rows(const struct measurement *measurement, const struct cook_torrance *model, enum bins bins,
@@ -76,15 +76,15 @@ static enum status read_rows(const struct measurement *measurement, const struct
 	const size_t n_max = (size_t)(THETA_D_MAX + 1) * (size_t)measurement->n_phi_d * MERL_CHANNELS;
 	const int32_t q_min = masking_q((struct vec3){sin(steepest), 0, cos(steepest)}) - 1;
 
-	r.wish = malloc(n_max * sizeof *r.wish);
-	const enum status status = r.wish ? masking_init(&r.masking, q_min, MASKING_FINE) : STATUS_NO_MEMORY;
+	r.value = malloc(n_max * sizeof *r.value);
+	const enum status status = r.value ? masking_init(&r.masking, q_min, MASKING_FINE) : STATUS_NO_MEMORY;
 	if (status == STATUS_OK && model->gaf != GAF_V_GROOVE)
 		masking_fill(&r.masking, &model->ndf);
 	for (int i = 0; i < MERL_THETA_H && status == STATUS_OK; i++)
 		D[i] = read_row(&r, i);
 	if (status == STATUS_OK)
 		masking_free(&r.masking);
-	free(r.wish);
+	free(r.value);
 	return status;
 }
 

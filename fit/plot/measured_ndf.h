@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* measured_ndf - the NDF read off a table with the help of a fit.
  *
- * With kd, ks, n and G of the fit held fixed, each entry asks for one D(theta_h): the one that makes the model right there,
- * D = (m - kd/pi) 4 cos_i cos_o / (ks F G). Of each theta_h the D is taken that brings the sum of |m - f| lowest, the
- * median of those wishes weighted by what a unit of D adds to f. Only entries with theta_d <= 30 degrees count, where F is
+ * With kd, ks, n and G of the fit held fixed, each entry gives one D(theta_h): the one with which the model equals the measurement there,
+ * D = (m - kd/pi) 4 cos_i cos_o / (ks F G). For each theta_h the D that minimises the sum of |m - f| is used: the
+ * median of these values, weighted by what a unit of D adds to f. Only entries with theta_d <= 30 degrees count, where F is
  * all but constant and G the same for wi and wo, and with theta_i, theta_o <= 80 degrees, where measurements can be
  * trusted. A cheap estimate: the free form `pl` (free_form.h) has kd, ks, n and G follow D as well. */
 #ifndef MEASURED_NDF_H
@@ -21,7 +21,7 @@ struct measured_ndf {
 	double scale; /* factor of the normalisation: 1 if ks, F and D of the fit agree with the data */
 };
 
-/* measured_ndf_make - reads the NDF off `samples`.
+/* measured_ndf_make - reads the NDF off the measurement.
  * Errors: STATUS_NO_DATA: the model has no specular term, or no entry that counts shows one; STATUS_NO_MEMORY.
  * *ndf is then empty. */
 MUST_CHECK enum status measured_ndf_make(const struct measurement *measurement, const struct cook_torrance *model,

@@ -9,8 +9,8 @@
 MUST_CHECK enum status plot_open(struct atomic_file *file, const char *directory, const char *name,
 				 struct error *error);
 
-/* plot_number - a cell of a CSV: a comma and the number. NaN stands there as such: of an empty cell gnuplot forgets the
- * point, and then draws a line across the gap, and an image askew. */
+/* plot_number - a cell of a CSV: a comma and the number. NaN is written as NaN: gnuplot skips an empty cell, and then
+ * draws a line across the gap and shifts the pixels of an image. */
 void plot_number(FILE *file, double x);
 /* plot_text - a name as a cell that gnuplot reads: in quotes, without any inside, on one line. */
 void plot_text(FILE *file, const char *text);

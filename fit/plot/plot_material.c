@@ -256,7 +256,7 @@ static int slices_legend(const struct material_data *data)
 	return data->n > 3 ? 150 : 0;
 }
 
-/* The lines of one panel stand together in the file. */
+/* The lines of one panel are next to each other in the file. */
 static void put_slice_panel(FILE *file, const struct material_data *data, int s)
 {
 	const int from = 1 + s * MERL_THETA_H, to = from + MERL_THETA_H - 1;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit/cli/text_stream.h"
 #include "fit/plot/gnuplot.h"
 #include "fit/plot/plot_common.h"
 #include "fit/plot/plot_files.h"
@@ -10,7 +11,7 @@
 /* The points of one material, NDF and algorithm. */
 struct curve {
 	char *const *row; /* its first */
-	char *label;      /* what tells it from the others */
+	char *label;      /* what distinguishes it from the others */
 	double last;      /* error at its end */
 	bool full;        /* which is one on the full table */
 	int colour;
@@ -47,7 +48,7 @@ static bool same_curve(char *const *a, char *const *b)
 	return true;
 }
 
-/* The curve of a row, added where it is the first of one. */
+/* The curve of a row; a new one is added for its first row. */
 static size_t curve_of(struct curves *c, char *const *row)
 {
 	for (size_t n = c->n; n-- > 0;)
@@ -64,8 +65,8 @@ static bool has_stage(char *const *row, const char *stage)
 	return !strcmp(row[TRACE_STAGE], stage);
 }
 
-/* Whether a further point shows something new. Once an error on the full table is known, estimates by thinned ones are
- * none, as a further search begins with. */
+/* Whether a further point shows something new. Once an error on the full table is known, the estimates on thinned tables
+ * that the next search begins with do not. */
 static bool is_news(const struct curve *curve, char *const *row)
 {
 	return !curve->full || (has_stage(row, "full") && cell_number(row, TRACE_ERROR) < curve->last);
@@ -77,25 +78,19 @@ static bool is_judged(const struct csv_table *trace)
 	return trace->n_rows > 0 && has_stage(trace->row[trace->n_rows - 1], "end");
 }
 
-/* What tells the curves apart; newly allocated, NULL when out of memory. */
+/* What distinguishes the curve from the others; newly allocated, NULL when out of memory. */
 static char *curve_label(const struct curves *c, const struct curve *curve)
 {
-	char *text = NULL;
-	size_t size;
-	FILE *file = open_memstream(&text, &size);
-	if (!file)
+	struct text_stream stream;
+	if (!text_stream_open(&stream))
 		return NULL;
 	const char *between = "";
 	for (int k = 0; k < CURVE_KEYS; k++)
 		if (c->differ[curve_key[k]] || (c->n == 1 && curve_key[k] == TRACE_ALGORITHM)) {
-			fprintf(file, "%s%s", between, curve->row[curve_key[k]]);
+			fprintf(stream.file, "%s%s", between, curve->row[curve_key[k]]);
 			between = ", ";
 		}
-	const bool failed = ferror(file);
-	if (!fclose(file) && !failed)
-		return text;
-	free(text);
-	return NULL;
+	return text_stream_close(&stream);
 }
 
 static enum status find_curves(struct curves *c, const struct csv_table *trace)
@@ -172,7 +167,7 @@ static enum status write_curves(const char *directory, const struct curves *c, s
 /* Below it E is that of a table without noise: a fall over so many powers of ten is shown whole. */
 #define NEXT_TO_NOTHING 1e-3
 
-/* Where the ends lie that come near the best one, and some of the way there. */
+/* The range that shows the curves whose ends are near the best one, and part of the way there. */
 static void put_range(FILE *file, const struct curves *c)
 {
 	double best = INFINITY, top;

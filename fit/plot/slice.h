@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* slice - lines through a table at phi_d = 90 degrees, where light and view stand alike and all theta_h are above the
+/* slice - lines through a table at phi_d = 90 degrees, where light and view are symmetric and all theta_h are above the
  * horizon: measured and modelled values side by side. */
 #ifndef SLICE_H
 #define SLICE_H

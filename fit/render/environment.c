@@ -116,7 +116,7 @@ static enum status check_map(const struct image *map, struct error *why)
 enum status environment_from_map(struct environment *e, struct image *map, struct error *why)
 {
 	enum status status = check_map(map, why);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	const size_t rows = (size_t)map->height, columns = (size_t)map->width;
 	struct environment made = {.map = *map,
@@ -126,7 +126,7 @@ enum status environment_from_map(struct environment *e, struct image *map, struc
 		status = error_set(why, STATUS_NO_MEMORY, "%s", status_str(STATUS_NO_MEMORY));
 	else if (!fill_cdfs(&made))
 		status = error_set(why, STATUS_FORMAT, "expected some light, found none");
-	if (status) {
+	if (status != STATUS_OK) {
 		free(made.row_cdf);
 		free(made.cell_cdf);
 		return status;

@@ -85,7 +85,7 @@ static enum status draw(struct environment *e, void (*at)(struct vec3 to, double
 {
 	struct image map;
 	enum status status = image_alloc(&map, 2 * MAP_HEIGHT, MAP_HEIGHT);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	for (int y = 0; y < map.height; y++)
 		for (int x = 0; x < map.width; x++) {

@@ -32,7 +32,7 @@ enum status image_alloc_for(struct image *image, double width, double height, st
 				 "expected sides from 1 to %d and at most 2^27 pixels, found %g x %g", IMAGE_SIZE_MAX,
 				 width, height);
 	const enum status status = image_alloc(image, (int)width, (int)height);
-	return status ? error_set(why, status, "%s", status_str(status)) : STATUS_OK;
+	return status != STATUS_OK ? error_set(why, status, "%s", status_str(status)) : STATUS_OK;
 }
 
 enum status image_read(const char *path, struct image *image, struct error *error)
@@ -43,14 +43,14 @@ enum status image_read(const char *path, struct image *image, struct error *erro
 	struct error why;
 	*image = (struct image){0};
 	enum status status = regular_file_read(path, what, (size_t)1 << 31, &bytes, &size, &why);
-	if (!status && image_is_pfm(bytes, size))
+	if (status == STATUS_OK && image_is_pfm(bytes, size))
 		status = image_decode_pfm(bytes, size, image, &why);
-	else if (!status && image_is_hdr(bytes, size))
+	else if (status == STATUS_OK && image_is_hdr(bytes, size))
 		status = image_decode_hdr(bytes, size, image, &why);
-	else if (!status)
+	else if (status == STATUS_OK)
 		status = error_set(&why, STATUS_FORMAT, "expected %s, found neither at its beginning", what);
 	free(bytes);
-	if (!status)
+	if (status == STATUS_OK)
 		return STATUS_OK;
 	char name[TEXT_QUOTE_SIZE];
 	text_quote(path, name, sizeof name);

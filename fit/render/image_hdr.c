@@ -139,7 +139,7 @@ enum status image_decode_hdr(const unsigned char *bytes, size_t size, struct ima
 	double exposure = 0;
 	*image = (struct image){0};
 	enum status status = read_header(&r, &width, &height, &exposure, why);
-	if (!status)
+	if (status == STATUS_OK)
 		status = image_alloc_for(image, (double)width, (double)height, why);
 	/* Four planes of runs of 127 pixels, two bytes each, are as dense as any writer of today packs them. A header that claims
 	 * more would cost gigabytes. */
@@ -153,15 +153,15 @@ enum status image_decode_hdr(const unsigned char *bytes, size_t size, struct ima
 	unsigned char(*pixel)[4] = malloc((size_t)image->width * sizeof *pixel);
 	if (!pixel)
 		status = error_set(why, STATUS_NO_MEMORY, "%s", status_str(STATUS_NO_MEMORY));
-	for (int y = 0; y < image->height && !status; y++) {
+	for (int y = 0; y < image->height && status == STATUS_OK; y++) {
 		if (!read_row(&r, pixel, image->width))
 			status = error_set(why, STATUS_FORMAT, "row %d of %d is broken or cut short", y + 1,
 					   image->height);
-		for (int x = 0; x < image->width && !status; x++)
+		for (int x = 0; x < image->width && status == STATUS_OK; x++)
 			decode_pixel(pixel[x], exposure, image_at(image, x, y));
 	}
 	free(pixel);
-	if (status)
+	if (status != STATUS_OK)
 		image_free(image);
 	return status;
 }

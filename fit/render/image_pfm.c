@@ -62,7 +62,7 @@ enum status image_decode_pfm(const unsigned char *bytes, size_t size, struct ima
 	if (width > 0 && height > 0 && wanted <= 0x1p40 && (double)(size - at) < wanted)
 		return error_set(why, STATUS_FORMAT, "expected %.0f bytes of pixels, found %zu", wanted, size - at);
 	const enum status status = image_alloc_for(image, width, height, why);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	const size_t row = (size_t)image->width * channels * sizeof(float);
 	for (int y = 0; y < image->height; y++)
@@ -80,7 +80,7 @@ enum status image_write_pfm(const char *path, const struct image *image, struct 
 {
 	struct atomic_file file;
 	const enum status status = atomic_file_open(&file, path, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	fprintf(file.stream, "PF\n%d %d\n-1.0\n", image->width, image->height);
 	for (int y = image->height; y-- > 0;)

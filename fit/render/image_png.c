@@ -35,9 +35,9 @@ enum status image_write_png(const char *path, const struct image *image, struct 
 	if (!bytes)
 		return error_set(error, STATUS_NO_MEMORY, "%s", status_str(STATUS_NO_MEMORY));
 	enum status status = atomic_file_open(&file, path, error);
-	if (!status && png_image_write_to_stdio(&png, file.stream, 0, bytes, 0, NULL)) {
+	if (status == STATUS_OK && png_image_write_to_stdio(&png, file.stream, 0, bytes, 0, NULL)) {
 		status = atomic_file_commit(&file, error);
-	} else if (!status) {
+	} else if (status == STATUS_OK) {
 		char name[TEXT_QUOTE_SIZE];
 		text_quote(path, name, sizeof name);
 		atomic_file_abort(&file);

@@ -8,7 +8,7 @@ static enum status render(const struct cook_torrance *model, const struct measur
 {
 	struct surface surface;
 	enum status status = surface_init(&surface, model, measured, sampling);
-	if (!status)
+	if (status == STATUS_OK)
 		status = sphere_render(&surface, environment, options, sphere);
 	surface_free(&surface);
 	return status;
@@ -31,18 +31,18 @@ enum status pictures_render(const struct measurement *measurement, enum bins bin
 	*p = (struct pictures){
 		.n = n, .sphere = calloc((size_t)n, sizeof *p->sphere), .error = calloc((size_t)n, sizeof *p->error)};
 	enum status status = p->sphere && p->error ? STATUS_OK : STATUS_NO_MEMORY;
-	if (!status)
+	if (status == STATUS_OK)
 		status = measured_init(&measured, measurement, bins);
-	if (!status) {
+	if (status == STATUS_OK) {
 		status = render(best_of(model, n), &measured, sampling, environment, options, &p->measured);
 		measured_free(&measured);
 	}
-	for (int i = 0; i < n && !status; i++) {
+	for (int i = 0; i < n && status == STATUS_OK; i++) {
 		status = render(model[i].model, NULL, sampling, environment, options, &p->sphere[i]);
-		if (!status)
+		if (status == STATUS_OK)
 			status = picture_error_compute(&p->sphere[i], &p->measured, &p->error[i]);
 	}
-	if (status)
+	if (status != STATUS_OK)
 		pictures_free(p);
 	return status;
 }

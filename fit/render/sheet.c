@@ -35,7 +35,7 @@ enum status sheet_init(struct sheet *sheet, int size, int columns, int rows, boo
 	if (width > IMAGE_SIZE_MAX || height > IMAGE_SIZE_MAX)
 		return STATUS_DOMAIN;
 	const enum status status = image_alloc(&sheet->image, (int)width, (int)height);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	const float paper[3] = {0.012F, 0.012F, 0.0135F};
 	for (size_t i = 0; i < 3 * (size_t)width * (size_t)height; i++)

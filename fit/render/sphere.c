@@ -59,7 +59,7 @@ static enum status fill_points(struct scene *scene, int n)
 	uint32_t(*pair)[2] = calloc((size_t)n, sizeof *pair);
 	scene->point = calloc((size_t)n, sizeof *scene->point);
 	const enum status status = pair && scene->point ? fill_sobol(pair, n) : STATUS_NO_MEMORY;
-	for (int d = 0; d < DIMENSIONS && !status; d += 2)
+	for (int d = 0; d < DIMENSIONS && status == STATUS_OK; d += 2)
 		for (int i = 0; i < n; i++) {
 			const int other = i + (int)(mix((uint64_t)d << 32 | (uint64_t)i) % (uint64_t)(n - i));
 			for (int e = 0; e < 2; e++) {
@@ -209,18 +209,18 @@ enum status sphere_render(const struct surface *surface, const struct environmen
 	struct scene scene = {.surface = surface, .environment = environment, .options = options};
 	*sphere = (struct sphere){0};
 	enum status status = fill_points(&scene, options->samples);
-	if (!status)
+	if (status == STATUS_OK)
 		status = image_alloc(&sphere->light, options->size, options->size);
-	if (!status) {
+	if (status == STATUS_OK) {
 		sphere->coverage = calloc((size_t)options->size * (size_t)options->size, sizeof(float));
 		status = sphere->coverage ? STATUS_OK : STATUS_NO_MEMORY;
 	}
-	if (!status) {
+	if (status == STATUS_OK) {
 		render_rows(&scene, sphere);
 		status = cancelled(options) ? STATUS_INTERRUPTED : STATUS_OK;
 	}
 	free(scene.point);
-	if (status)
+	if (status != STATUS_OK)
 		sphere_free(sphere);
 	return status;
 }

@@ -19,7 +19,7 @@ enum status surface_init(struct surface *s, const struct cook_torrance *model, c
 	s->visible = sampling == SAMPLING_VISIBLE && vndf_supports(&model->ndf);
 	const struct vec3 lowest = {sqrt(1 - SURFACE_HORIZON * SURFACE_HORIZON), 0, SURFACE_HORIZON};
 	const enum status status = masking_init(&s->masking, masking_q(lowest) - 1, MASKING_FINE);
-	if (!status)
+	if (status == STATUS_OK)
 		masking_fill(&s->masking, &model->ndf);
 	return status;
 }

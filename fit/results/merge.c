@@ -47,6 +47,7 @@ static enum status read_tables(struct merge *m, struct error *error)
 	m->part = calloc(n, sizeof(*m->part));
 	if (!m->part)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	m->n = 0;
 	for (int t = 0; t < m->n_paths; t++)
 		for (size_t i = 0; i < m->table[t].n_rows; i++, m->n++)
 			m->part[m->n] = (struct merge_part){m->table[t].row[i], m->path[t], i + 1, m->n};

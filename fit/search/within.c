@@ -130,7 +130,7 @@ static enum status try_variant(struct selection *s, int i, struct error *error)
 	const struct fit_options o = variant_options(s->options, v);
 	struct fit_result result;
 	const enum status status = fit_run(s->context, s->measurement, &o, &result, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	if (result.error <= s->limit) {
 		*s->chosen = o;
@@ -188,12 +188,12 @@ static enum status try_lambert(struct selection *s, double percent, bool *chosen
 	double best;
 	enum status status = fit_estimate(s->context, s->measurement, s->options, &best, NULL);
 	*chosen = false;
-	if (status)
+	if (status != STATUS_OK)
 		return error_set(error, status, "%s", status_str(status));
 	if (isinf(best))
 		return STATUS_OK;
 	s->limit = best * (1 + percent / 100) * 0.997;
-	for (int i = 0; i < s->list.n && !*chosen && !status; i++) {
+	for (int i = 0; i < s->list.n && !*chosen && status == STATUS_OK; i++) {
 		const struct variant v = s->list.v[i];
 		if (v.terms & TERM_SPECULAR)
 			continue;
@@ -222,17 +222,17 @@ enum status within_run(const struct fit_context *context, const struct measureme
 	if (status || lambert)
 		return status;
 	status = fit_run(context, measurement, options, whole, error);
-	if (status)
+	if (status != STATUS_OK)
 		return status;
 	const int richest = take_whole(&s, whole, percent);
 	const unsigned all = all_terms(options);
 	/* First the whole model less one term: where that fails, it spares all variants inside. Then the simplest. */
-	for (unsigned term = 1; term < TERMS && !status; term <<= 1) {
+	for (unsigned term = 1; term < TERMS && status == STATUS_OK; term <<= 1) {
 		const int i = (term & all) ? find_variant(&s.list, all & ~term, richest) : -1;
 		if (i >= 0)
 			status = try_variant(&s, i, error);
 	}
-	while (s.list.n > 0 && !status)
+	while (s.list.n > 0 && status == STATUS_OK)
 		status = try_variant(&s, 0, error);
 	return status;
 }

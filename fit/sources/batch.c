@@ -2,8 +2,8 @@
 #include "fit/sources/batch.h"
 #include "data_readers/merl.h"
 #include "data_readers/text_quote.h"
+#include "fit/cli/messages.h"
 #include "fit/cli/progress.h"
-#include "fit/cli/report.h"
 #include "fit/search/within.h"
 
 #include <fcntl.h>
@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 enum {
-	TICK_MS = 150, /* how often the progress line is drawn and Ctrl-C looked for, while nothing else happens */
+	TICK_MS = 150, /* how often the progress line is drawn and Ctrl-C checked for, while nothing else happens */
 	CONTEXTS = 2,  /* 180 and 360 entries along phi_d */
 	CONTEXT_PHI = 180,
 };
@@ -25,7 +25,7 @@ struct run {
 	int threads_per_fit;
 	pthread_mutex_t lock;         /* of all below */
 	pthread_cond_t ended;         /* a file or a thread did */
-	size_t next;                  /* the file to take next */
+	size_t next;                  /* the next file to fit */
 	size_t *finished, n_finished; /* files in the order in which they ended */
 	int running;                  /* threads */
 	struct fit_context *context[CONTEXTS];
@@ -64,15 +64,15 @@ struct result_source batch_source(const struct batch *batch, const struct batch_
 	return (struct result_source){file->path, file->unread ? NULL : file->input, batch->options_text};
 }
 
-/* The geometry for this kind of table, made by whoever needs it first. */
+/* The context for this kind of table, made by the first thread that needs it. */
 static enum status get_context(struct run *run, int n_phi_d, const struct fit_context **context)
 {
-	struct fit_context **slot = &run->context[n_phi_d != CONTEXT_PHI];
+	struct fit_context **shared = &run->context[n_phi_d != CONTEXT_PHI];
 	enum status status = STATUS_OK;
 	pthread_mutex_lock(&run->lock);
-	if (!*slot)
-		status = fit_context_new(slot, n_phi_d, &run->batch->options->fit);
-	*context = *slot;
+	if (!*shared)
+		status = fit_context_new(shared, n_phi_d, &run->batch->options->fit);
+	*context = *shared;
 	pthread_mutex_unlock(&run->lock);
 	return status;
 }
@@ -145,11 +145,11 @@ static enum status process(struct run *run, struct batch_file *file)
 	if (file->failed) {
 		const struct result_source source = batch_source(run->batch, file);
 		csv_table_free(&file->rows);
-		/* A disk that is away for a while undoes no fit. */
+		/* A disk that is unavailable for a while must not replace earlier fits. */
 		if (file->unread && run->batch->store)
 			drop_known(run->batch, &source, &fit);
 		if (result_add_failure(&file->rows, &source, &fit, file->error.text))
-			csv_table_free(&file->rows); /* no room for a row; the message is there still */
+			csv_table_free(&file->rows); /* no memory for a row; the message is still reported */
 	}
 	return STATUS_OK;
 }
@@ -197,7 +197,7 @@ static void wait_a_tick(struct run *run)
 	pthread_cond_timedwait(&run->ended, &run->lock, &until);
 }
 
-/* Hands on what is done until all threads have ended. Returns whether done() stopped the run. */
+/* Passes finished files to done() until all threads have ended. Returns whether done() stopped the run. */
 static bool hand_on(struct run *run, size_t *n_failed)
 {
 	const struct batch *batch = run->batch;

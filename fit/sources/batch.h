@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* batch - fits many files: one per thread, the next one's bytes on their way from the disk meanwhile. */
+/* batch - fits many files, one per thread, while the next file is read ahead from the disk. */
 #ifndef BATCH_H
 #define BATCH_H
 
@@ -8,11 +8,11 @@
 #include "fit/results/store.h"
 #include "fit/results/trace.h"
 
-/* struct batch_file - one file and what came of it. */
+/* struct batch_file - one file and its result. */
 struct batch_file {
 	const char *path;
 	char input[RESULT_INPUT_SIZE]; /* "" until it is read */
-	bool unread;                   /* it could not be read at all: what bytes it has is not known */
+	bool unread;                   /* it could not be read at all: its bytes are unknown */
 	struct csv_table rows;         /* new rows: none for NDFs that the store has, a failure's row per NDF */
 	struct trace trace;            /* if the options want one */
 	bool done;                     /* false: not begun, or interrupted */
@@ -33,15 +33,15 @@ struct batch {
 };
 
 /* batch_init - prepares the files of a command; batch_free releases them and their rows. STATUS_NO_MEMORY,
- * told on standard error. */
+ * reported on standard error. */
 MUST_CHECK enum status batch_init(struct batch *batch, const struct options *options, const struct files *files);
 void batch_free(struct batch *batch);
 
-/* batch_run - fits every file. A file that fails is told on standard error. Returns the exit code: EXIT_DONE,
+/* batch_run - fits every file. A file that fails is reported on standard error. Returns the exit code: EXIT_DONE,
  * EXIT_FAILED (a file failed, done() returned false, no thread could be started), EXIT_INTERRUPTED. */
 int batch_run(struct batch *batch);
 
-/* batch_source - what the rows of a file say of it. */
+/* batch_source - the columns that identify a file in its rows. */
 struct result_source batch_source(const struct batch *batch, const struct batch_file *file);
 
 #endif

@@ -39,9 +39,9 @@ static enum status describe(const struct options *options, struct described *ite
 	return distribution_make(&item->words, &item->distribution, error);
 }
 
-/* The distribution of a model, whose table stays with the model, and the words that make it again; there are none for
- * a table. */
-static void take(const struct source_model *model, struct described *item)
+/* The distribution of a model, whose table stays with the model, and the words that describe it; a table has
+ * none. */
+static void move_model(const struct source_model *model, struct described *item)
 {
 	const struct ndf *ndf = &model->model.ndf;
 	item->distribution = (struct distribution){.name = ndf_name(ndf->class), .ndf = *ndf};
@@ -82,7 +82,7 @@ enum status distribution_source_read(const struct options *options, struct distr
 	else if (!options->from)
 		status = describe(options, &source->item[0], error);
 	for (size_t i = 0; status == STATUS_OK && options->from && i < n; i++)
-		take(&source->models.model[i], &source->item[i]);
+		move_model(&source->models.model[i], &source->item[i]);
 	source->n = n;
 	if (status != STATUS_OK)
 		distribution_source_free(source);

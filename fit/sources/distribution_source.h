@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* distribution_source - where `ndf` and `sample` take distributions from: NAME with --sigma, --gamma, --params,
+/* distribution_source - the distributions of `ndf` and `sample`: NAME with --sigma, --gamma, --params,
  * --lambda; or the rows of a result table, --from and --row. */
 #ifndef DISTRIBUTION_SOURCE_H
 #define DISTRIBUTION_SOURCE_H
@@ -22,7 +22,7 @@ struct distribution_source {
 	struct model_source models;
 };
 
-/* distribution_source_check - whether the options go together. Returns -1, or EXIT_USAGE, told. */
+/* distribution_source_check - whether the options go together. Returns -1, or EXIT_USAGE with a message on standard error. */
 MUST_CHECK int distribution_source_check(const struct options *options);
 
 /* distribution_source_read - the distributions that the options ask for. Errors: STATUS_DOMAIN (the words describe
@@ -31,7 +31,7 @@ MUST_CHECK enum status distribution_source_read(const struct options *options, s
 						struct error *error);
 void distribution_source_free(struct distribution_source *source);
 
-/* distribution_end - as options_end(), but words that describe nothing (STATUS_DOMAIN, STATUS_UNSUPPORTED) are wrong
+/* distribution_end - as options_end(), but invalid words (STATUS_DOMAIN, STATUS_UNSUPPORTED) are wrong
  * usage. */
 int distribution_end(const struct options *options, enum status status, const struct error *error,
 		     struct csv_table *table);

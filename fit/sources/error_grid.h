@@ -10,12 +10,12 @@ struct error_line {
 	const struct material *material;
 	double error[FIT_NDFS_MAX]; /* per NDF; NaN: no fit */
 	int best;                   /* NDF of the lowest error, pl only where there is no other; -1: no fit at all */
-	double key;                 /* what error_grid_sort() goes by */
+	double key;                 /* error_grid_sort() sorts by this */
 };
 
 struct error_grid {
 	int n_ndf;
-	const char *ndf[FIT_NDFS_MAX]; /* in the order in which the rows bring them */
+	const char *ndf[FIT_NDFS_MAX]; /* in the order of their first rows */
 	size_t n, n_fitted;            /* materials; those with a fit */
 	struct error_line *line;       /* in the order of the materials */
 	bool by_std;                   /* sorted by the error of STD, which every fitted material has */

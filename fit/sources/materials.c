@@ -3,6 +3,7 @@
 #include "data_readers/merl.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/files.h"
+#include "fit/cli/messages.h"
 #include "fit/cli/output_directory.h"
 #include "fit/results/store.h"
 #include "fit/sources/batch.h"
@@ -26,7 +27,7 @@ static int material_order(char *const *a, char *const *b)
 	return order ? order : text_order(a, b, RESULT_OPTIONS);
 }
 
-/* A row and where it stood, so that the NDFs of a material keep their order. */
+/* A row and its index, so that the NDFs of a material keep their order. */
 struct indexed_row {
 	char **row;
 	size_t index;
@@ -53,7 +54,7 @@ static enum status sort_rows(struct csv_table *rows)
 	return STATUS_OK;
 }
 
-/* A character of a name, or what stands for it in the name of a file. */
+/* A character of a name, or its replacement in a file name. */
 static char plain(char c, bool first)
 {
 	const bool letter = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
@@ -63,7 +64,7 @@ static char plain(char c, bool first)
 	return '_';
 }
 
-/* Names that differ in what a file name cannot have, or only in case, are told apart by a number. */
+/* Names that become the same file name, or differ only in case, are distinguished by a number. */
 static void name_files(struct materials *materials)
 {
 	enum { NUMBER_ROOM = 24 };
@@ -78,7 +79,7 @@ static void name_files(struct materials *materials)
 			if (strcasecmp(m->file_name, materials->material[k].file_name))
 				continue;
 			snprintf(m->file_name + length, NUMBER_ROOM, "-%zu", ++number);
-			k = (size_t)-1; /* the new name may be taken as well */
+			k = (size_t)-1; /* the new name may be in use as well */
 		}
 	}
 }
@@ -136,7 +137,7 @@ static int fit_rows(struct csv_table *rows, const struct options *options)
 	struct error error;
 	enum status status = output_directory_spares(options->output, "fits.csv", files.path, (int)files.n, &error);
 	if (status == STATUS_OK)
-		status = output_directory_takes(options->output, "fits.csv", &error);
+		status = output_directory_accepts(options->output, "fits.csv", &error);
 	if (status != STATUS_OK) {
 		files_free(&files);
 		if (status == STATUS_DOMAIN)

@@ -26,7 +26,7 @@ struct materials {
 
 /* materials_collect - rows of the one result table among the command's paths, or of a fit of its files.
  * A fit's rows are kept in DIR/fits.csv, DIR being the command's output.
- * Returns an exit code, what went wrong told on standard error: EXIT_FAILED with some materials in hand when only a part
+ * Returns an exit code, what went wrong reported on standard error: EXIT_FAILED with some materials when only a part
  * of the files could be fitted. */
 int materials_collect(struct materials *materials, const struct options *options);
 void materials_free(struct materials *materials);
@@ -50,7 +50,7 @@ struct material_data {
 };
 
 /* material_read - the table that the rows were made from, and the model of each row that did not fail.
- * Errors: STATUS_NO_DATA: no row to show; STATUS_FORMAT: a row that is none, more rows than FIT_NDFS_MAX, or a file that is
+ * Errors: STATUS_NO_DATA: no row to show; STATUS_FORMAT: an invalid row, more rows than FIT_NDFS_MAX, or a file that is
  * not the one of the rows; STATUS_IO, STATUS_NO_MEMORY. *data holds nothing then. */
 MUST_CHECK enum status material_read(const struct material *material, int threads, struct material_data *data,
 				     struct error *error);

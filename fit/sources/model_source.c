@@ -24,9 +24,9 @@ static const char *first_given(const struct options *options, const char *const 
 	return *name;
 }
 
-/* What says how to fit, and nothing about a model. */
+/* Options that control a fit and do not describe a model. */
 static const char *const of_a_fit[] = {"weight", "unbounded", "no-diffuse", "no-specular", "gray", NULL};
-/* What a row brings with it. */
+/* Options that a row determines. */
 static const char *const of_a_model[] = {"kd",  "ks",     "sigma", "gamma",   "ior",       "k",
 					 "gaf", "lambda", "bins",  "fresnel", "max-theta", NULL};
 
@@ -194,7 +194,7 @@ static enum status add_results(const struct options *options, const char *path, 
 {
 	enum status status = STATUS_OK;
 	for (int i = 0; i < options->fit.n_ndf; i++) {
-		struct source_model *model = status ? NULL : add(source, options, material);
+		struct source_model *model = status != STATUS_OK ? NULL : add(source, options, material);
 		if (!model || !set_path(model, path)) {
 			status = no_memory(error);
 			fit_result_free(&result[i]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* model_source - where a command takes its models from:
+/* model_source - the models of a command, from one of these sources:
  *     rows of a result table    --from FILE.csv, all of --ndf that are of this material, or --row N
  *     a model's JSON            --from FILE.json, as `stdfit export` writes it
  *     given parameters          --kd, --ks, --ndf, --sigma, --gamma, ...
@@ -36,7 +36,7 @@ struct model_source {
 enum source_kind model_source_kind(const struct options *options);
 
 /* model_source_check - whether the options go together and describe models. may_fit: the command fits when they give
- * none. Returns -1, or EXIT_USAGE with what is wrong told on standard error. */
+ * none. Returns -1, or EXIT_USAGE with a message on standard error. */
 MUST_CHECK int model_source_check(const struct options *options, bool may_fit);
 
 /* model_source_read - the models that the options, checked, ask for, in the order of the table or of --ndf.
@@ -46,7 +46,7 @@ MUST_CHECK int model_source_check(const struct options *options, bool may_fit);
 MUST_CHECK enum status model_source_read(const struct options *options, const char *path, struct model_source *source,
 					 struct error *error);
 
-/* model_source_free - releases models and samples; harmless on a zeroed struct. */
+/* model_source_free - releases models and measurement; harmless on a zeroed struct. */
 void model_source_free(struct model_source *source);
 
 #endif

@@ -61,7 +61,7 @@ static void models_free(struct models *m)
 	free(m->row);
 }
 
-/* Every row must be of the bytes that are there. */
+/* Every row must have been made from the bytes of the file as it is now. */
 static enum status read_samples(const struct models *m, char **const *rows, const struct fit_options *options,
 				struct measurement *measurement, struct error *error)
 {

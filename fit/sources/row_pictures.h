@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* row_pictures - how the models of rows of a result table look beside their measured table. */
+/* row_pictures - picture errors of the models in a result table against their measured table. */
 #ifndef ROW_PICTURES_H
 #define ROW_PICTURES_H
 
 #include "fit/render/pictures.h"
 #include "fit/results/result.h"
 
-/* row_pictures_errors - reads the file of rows[0 .. n-1], which are of one, renders it and every model in the built-in
+/* row_pictures_errors - reads the file of rows[0 .. n-1], which all have the same one, renders it and every model in the built-in
  * studio light, 64 pixels wide, and puts the errors of the pictures into error[0 .. n-1]; NaN for rows of failed fits.
  * Returns STATUS_OK; STATUS_IO, STATUS_FORMAT, STATUS_NO_MEMORY, STATUS_INTERRUPTED with the reason, every error then
  * being NaN. */
