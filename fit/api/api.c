@@ -38,27 +38,22 @@ enum stdfit_status api_end(struct stdfit_error *error, enum status status, const
 	return api_fail(error, status, "%s", why && why->text[0] ? why->text : status_str(status));
 }
 
-static enum stdfit_status unknown(const char *what, const char *name, struct stdfit_error *error)
-{
-	return api_fail(error, STATUS_DOMAIN, "%s: there is none called '%.100s'", what, name);
-}
-
 enum stdfit_status api_gaf(const char *name, enum gaf *gaf, struct stdfit_error *error)
 {
 	*gaf = GAF_UNCORRELATED;
-	return name && gaf_find(name, gaf) != STATUS_OK ? unknown("gaf", name, error) : STDFIT_OK;
+	return name && gaf_find(name, gaf) != STATUS_OK ? api_unknown(error, "gaf", name) : STDFIT_OK;
 }
 
 enum stdfit_status api_fresnel(const char *name, enum fresnel *fresnel, struct stdfit_error *error)
 {
 	*fresnel = FRESNEL_DIELECTRIC;
-	return name && fresnel_find(name, fresnel) != STATUS_OK ? unknown("fresnel", name, error) : STDFIT_OK;
+	return name && fresnel_find(name, fresnel) != STATUS_OK ? api_unknown(error, "fresnel", name) : STDFIT_OK;
 }
 
 enum stdfit_status api_bins(const char *name, enum bins *bins, struct stdfit_error *error)
 {
 	*bins = BINS_NODE;
-	return name && bins_find(name, bins) != STATUS_OK ? unknown("bins", name, error) : STDFIT_OK;
+	return name && bins_find(name, bins) != STATUS_OK ? api_unknown(error, "bins", name) : STDFIT_OK;
 }
 
 enum stdfit_status api_directions(const char *what, size_t n, const double *directions, struct stdfit_error *error)

@@ -75,11 +75,11 @@ static enum stdfit_status read_names(const struct stdfit_options *options, struc
 	if (status != STDFIT_OK)
 		return status;
 	if (options->lambda && lambda_form_find(options->lambda, &inner->lambda) != STATUS_OK)
-		return api_fail(error, STATUS_DOMAIN, "lambda: there is none called '%.100s'", options->lambda);
+		return api_unknown(error, "lambda", options->lambda);
 	if (options->weight && weight_find(options->weight, &inner->criterion.weight) != STATUS_OK)
-		return api_fail(error, STATUS_DOMAIN, "weight: there is none called '%.100s'", options->weight);
+		return api_unknown(error, "weight", options->weight);
 	if (options->algorithm && algorithm_find(options->algorithm, &inner->algorithm) != STATUS_OK)
-		return api_fail(error, STATUS_DOMAIN, "algorithm: there is none called '%.100s'", options->algorithm);
+		return api_unknown(error, "algorithm", options->algorithm);
 	return STDFIT_OK;
 }
 

@@ -33,7 +33,7 @@ static enum stdfit_status init_class(struct stdfit_ndf *ndf, const char *name, d
 		return api_fail(error, STATUS_DOMAIN, "ndf: there is none with parameters called '%.100s'",
 				name ? name : "(NULL)");
 	if (lambda && lambda_form_find(lambda, &form) != STATUS_OK)
-		return api_fail(error, STATUS_DOMAIN, "lambda: there is none called '%.100s'", lambda);
+		return api_unknown(error, "lambda", lambda);
 	if (ndf_init(&ndf->ndf, class, sigma_x, sigma_y, gamma) != STATUS_OK)
 		return api_fail(error, STATUS_DOMAIN, "%s does not take sigma %g, %g and gamma %g", name, sigma_x,
 				sigma_y, gamma);

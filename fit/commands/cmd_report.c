@@ -6,6 +6,7 @@
 #include "fit/cli/messages.h"
 #include "fit/cli/output_directory.h"
 #include "fit/cli/progress.h"
+#include "fit/cli/text_stream.h"
 #include "fit/commands/commands.h"
 #include "fit/page/page.h"
 #include "fit/page/report_spheres.h"
@@ -106,11 +107,10 @@ static void put_light(FILE *file, const struct options *options)
 static char *spheres_caption(const struct options *options, const struct material_data *data,
 			     const struct picture_error *difference)
 {
-	char *text = NULL;
-	size_t size;
-	FILE *file = open_memstream(&text, &size);
-	if (!file)
+	struct text_stream caption;
+	if (!text_stream_open(&caption))
 		return NULL;
+	FILE *file = caption.file;
 	fputs("Spheres in the same light (", file);
 	put_light(file, options);
 	fputs("), and in false colours how far each fit's is from the measured one. Mean CIEDE2000 and SSIM:", file);
@@ -118,11 +118,7 @@ static char *spheres_caption(const struct options *options, const struct materia
 		fprintf(file, "%s %s %.2f, %.4f", f ? ";" : "", data->fit[f].ndf, difference[f].delta_e,
 			difference[f].ssim);
 	fputs(".", file);
-	const bool failed = ferror(file);
-	if (!fclose(file) && !failed)
-		return text;
-	free(text);
-	return NULL;
+	return text_stream_close(&caption);
 }
 
 /* Without libpng the page does without spheres, which is told once. */
