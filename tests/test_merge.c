@@ -216,9 +216,9 @@ static void failed_writes(void **state)
 	expect_error(1, "cannot write standard output: No space left on device");
 	stdfit("merge p-1.csv p-2.csv -o /dev/full");
 	expect_error(1, "cannot write '/dev/full': No space left on device");
-	/* Through a symbolic link: the link stays, what it led to is replaced, and kept. */
+	/* Through a symbolic link: the link stays, what it leads to is replaced, and kept beside that. */
 	shell("mkdir far; cp whole.csv far/real.csv; ln -s far/real.csv link.csv;"
-	      "\"$STDFIT\" merge p-1.csv p-2.csv -o link.csv && test -L link.csv && cmp link.csv~ whole.csv && ! cmp "
+	      "\"$STDFIT\" merge p-1.csv p-2.csv -o link.csv && test -L link.csv && cmp far/real.csv~ whole.csv && ! cmp "
 	      "-s "
 	      "far/real.csv whole.csv");
 	expect_code(0);
