@@ -218,7 +218,7 @@ static enum status add_row(struct bench *b, const struct algorithm *algorithm, c
 		number[BENCH_CHECKPOINT + i] = error_after(b, trace, checkpoint_s[i]);
 	for (int c = BENCH_CHECKPOINT; c < BENCH_COLUMNS; c++)
 		cell[c] = csv_number(text[c], number[c]);
-	if (csv_table_add(&b->output, cell))
+	if (csv_table_add(&b->output, cell) != STATUS_OK)
 		return error_set(&b->error, STATUS_NO_MEMORY, "out of memory");
 	return STATUS_OK;
 }
@@ -343,7 +343,7 @@ static enum status add_form(struct bench *b, enum lambda_form form, const struct
 	}
 	for (int c = FORMS_ERROR; c < FORMS_COLUMNS; c++)
 		cell[c] = csv_number(text[c], number[c]);
-	if (csv_table_add(&b->output, cell))
+	if (csv_table_add(&b->output, cell) != STATUS_OK)
 		return error_set(&b->error, STATUS_NO_MEMORY, "out of memory");
 	return STATUS_OK;
 }
@@ -397,8 +397,8 @@ static void release(struct bench *b)
 static bool has_forms(const struct ndf_class *class)
 {
 	struct ndf ndf;
-	return !ndf_is_tabulated(class) && !ndf_init(&ndf, class, 0.1, 0.1, 3) &&
-	       !ndf_set_lambda_form(&ndf, LAMBDA_RATIONAL);
+	return !ndf_is_tabulated(class) && ndf_init(&ndf, class, 0.1, 0.1, 3) == STATUS_OK &&
+	       ndf_set_lambda_form(&ndf, LAMBDA_RATIONAL) == STATUS_OK;
 }
 
 static int check(const struct options *options)
@@ -439,5 +439,5 @@ int cmd_bench(int argc, char **argv, atomic_bool *cancel)
 	release(&b);
 	if (*cancel)
 		return EXIT_INTERRUPTED;
-	return status || b.incomplete ? EXIT_FAILED : EXIT_DONE;
+	return status != STATUS_OK || b.incomplete ? EXIT_FAILED : EXIT_DONE;
 }

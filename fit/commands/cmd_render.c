@@ -129,7 +129,7 @@ static enum status plan_columns(struct render *render, const struct files *files
 			return status;
 		if (status != STATUS_OK)
 			continue;
-		if (!choose(render, &source, files->path[i], &chosen, error)) {
+		if (choose(render, &source, files->path[i], &chosen, error) == STATUS_OK) {
 			int column[COLUMNS_MAX];
 			find_columns(render, &chosen, column, true);
 		}
@@ -300,7 +300,7 @@ static int show_files(struct render *render, const struct files *files)
 	if (*options->cancel)
 		return EXIT_INTERRUPTED;
 	sheet_end(&render->sheet, render->n_drawn);
-	if (render->picture && failed < files->n && write_picture(render, &error)) {
+	if (render->picture && failed < files->n && write_picture(render, &error) != STATUS_OK) {
 		report_error("%s", error.text);
 		return EXIT_FAILED;
 	}
@@ -312,7 +312,7 @@ static enum status table_files(const char *table, struct files *files, const ato
 {
 	struct csv_table rows = csv_table_make(result_columns, RESULT_COLUMNS);
 	enum status status = csv_table_read(&rows, table, RESULT_SAMPLES, NULL, error);
-	char **path = status ? NULL : calloc(rows.n_rows + 1, sizeof *path);
+	char **path = status != STATUS_OK ? NULL : calloc(rows.n_rows + 1, sizeof *path);
 	int n = 0;
 	for (size_t i = 0; i < rows.n_rows && path; i++)
 		if (*rows.row[i][RESULT_PATH] && !result_failed(rows.row[i]))
@@ -354,7 +354,7 @@ static int collect_and_show(struct render *render)
 		bad = files_collect(&files, options->path, options->n_paths, options->recursive, options->cancel);
 	if (status != STATUS_OK)
 		report_error("%s", error.text);
-	int code = status || bad < 0 || !files.n ? EXIT_FAILED : -1;
+	int code = status != STATUS_OK || bad < 0 || !files.n ? EXIT_FAILED : -1;
 	if (code < 0)
 		code = check_output(render, &files);
 	if (code < 0)

@@ -159,7 +159,7 @@ static bool draw_plots(struct report *r, const struct material_data *data, struc
 {
 	static const char *const name[PICTURES] = {
 		[PICTURE_SLICES] = "slices.svg", [PICTURE_MAP] = "map.png", [PICTURE_NDF] = "ndf.svg"};
-	if (plot_material(r->scratch.path, data, why)) {
+	if (plot_material(r->scratch.path, data, why) != STATUS_OK) {
 		tell(r, why);
 		return false;
 	}
