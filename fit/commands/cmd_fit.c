@@ -173,7 +173,7 @@ static int collect(const struct options *options, struct files *files)
 	return bad;
 }
 
-/* An output takes the place of an older file, but not that of an input. Returns -1 or EXIT_USAGE. */
+/* An output replaces an older file, but no input. Returns -1 or EXIT_USAGE. */
 static int check_outputs(const struct options *options, const struct files *files)
 {
 	const char *const output[] = {options->output, options->trace};
