@@ -78,7 +78,8 @@ static enum status write_standard(const struct export *export, struct error *err
 		return error_set(error, STATUS_IO, "cannot write '/dev/null': %s", strerror(errno));
 	const enum status status = write_stream(export, nowhere, error);
 	fclose(nowhere);
-	return status != STATUS_OK ? status : write_stream(export, stdout, error); /* main() reports when writing fails */
+	/* main() reports when writing fails. */
+	return status != STATUS_OK ? status : write_stream(export, stdout, error);
 }
 
 static enum status write_text(const struct export *export, const char *path, struct error *error)

@@ -163,7 +163,7 @@ static double find_relation(const struct comparison *c, const double *error, con
 enum status comparison_add(struct comparison *c, char **const *rows, size_t n, const struct compare_picture *picture)
 {
 	const int first = first_picture(c);
-	double number[COMPARE_VALUES_MAX];
+	double number[COMPARE_VALUES_MAX] = {0};
 	for (int i = 0; i < c->n_values; i++)
 		number[i] = NAN;
 	for (size_t i = 0; i < n; i++) {
@@ -193,7 +193,7 @@ enum status comparison_end(struct comparison *c)
 {
 	enum { MEAN, MEDIAN, WORST, WINS, LINES };
 	static const char *const name[LINES] = {"(mean)", "(median)", "(worst)", "(wins)"};
-	double number[LINES][COMPARE_VALUES_MAX];
+	double number[LINES][COMPARE_VALUES_MAX] = {{0}};
 	for (int i = 0; i < c->n_values; i++) {
 		double *x = c->value[i];
 		size_t n = 0;
