@@ -69,14 +69,15 @@ enum status shown_columns_plan(struct shown_columns *columns, const struct optio
 	for (size_t i = 0; i < files->n; i++) {
 		struct model_source source;
 		struct shown_models shown;
-		int column[SHOWN_MAX];
 		const enum status status = model_source_read(options, files->path[i], &source, error);
 		if (status == STATUS_NO_MEMORY)
 			return status;
 		if (status != STATUS_OK)
 			continue;
-		if (shown_models_choose(&source, files->path[i], by_path, &shown, error) == STATUS_OK)
+		if (shown_models_choose(&source, files->path[i], by_path, &shown, error) == STATUS_OK) {
+			int column[SHOWN_MAX];
 			find(columns, &shown, column, true);
+		}
 		model_source_free(&source);
 	}
 	return STATUS_OK;
