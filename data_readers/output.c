@@ -82,9 +82,15 @@ static char *follow_links(const char *path)
 	return at;
 }
 
-static bool is_standard_output(const struct output *output)
+/* Given as "-". */
+static bool is_dash(const struct output *output)
 {
 	return !strcmp(output->path, "-");
+}
+
+bool output_is_standard(const struct output *output)
+{
+	return output->in_order && (is_dash(output) || own_descriptor(output->target) == STDOUT_FILENO);
 }
 
 /* Locks */
@@ -159,7 +165,7 @@ enum status output_failed(const struct output *output, int errnum, struct error 
 {
 	char name[TEXT_QUOTE_SIZE];
 	const enum status status = errnum == ENOMEM ? STATUS_NO_MEMORY : STATUS_IO;
-	if (is_standard_output(output))
+	if (is_dash(output))
 		return error_set(error, status, "cannot write standard output: %s", strerror(errnum));
 	text_quote(output->path, name, sizeof name);
 	if (errnum != EWOULDBLOCK || output->in_order)
@@ -179,7 +185,7 @@ enum status output_find(struct output *output, const char *path, struct error *e
 		output_close(output);
 		return status;
 	}
-	output->in_order = is_standard_output(output) || is_in_proc(output->target) ||
+	output->in_order = is_dash(output) || is_in_proc(output->target) ||
 			   (!stat(output->target, &info) && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode));
 	return STATUS_OK;
 }
@@ -188,7 +194,7 @@ enum status output_find(struct output *output, const char *path, struct error *e
 
 static int open_in_order(const struct output *output)
 {
-	const int own = is_standard_output(output) ? STDOUT_FILENO : own_descriptor(output->target);
+	const int own = is_dash(output) ? STDOUT_FILENO : own_descriptor(output->target);
 	if (own < 0)
 		return open_again(output->target, O_WRONLY | O_APPEND);
 	const int flags = fcntl(own, F_GETFL);

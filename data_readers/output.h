@@ -32,6 +32,9 @@ enum output_use {
  * *output is cleared then. */
 MUST_CHECK enum status output_find(struct output *output, const char *path, struct error *error);
 
+/* output_is_standard - whether it is written in order to standard output, by whatever name. */
+bool output_is_standard(const struct output *output);
+
 /* output_open - after output_find(): opens what is written in order; a named pipe is waited for until it has a reader. A
  * file that is there is locked (flock) until output_close(), whatever takes its name meanwhile. Where the file system
  * has no locks it does without.

@@ -2,6 +2,7 @@
 #include "fit/results/store.h"
 #include "data_readers/atomic_file.h"
 #include "data_readers/text_quote.h"
+#include "fit/results/contradiction.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -115,6 +116,30 @@ enum status store_check_columns(const char *path, struct error *error)
 	return beginning == HEADER_WHOLE ? STATUS_OK : foreign_columns(path, "merge", error);
 }
 
+/* Puts the old rows in order and finds out which of them count. */
+static enum status sort_old(struct store *store)
+{
+	struct contradiction found, again;
+	char name[TEXT_QUOTE_SIZE];
+	store->stale = calloc(store->old.n_rows + 1, sizeof(*store->stale));
+	store->doubtful = calloc(store->old.n_rows + 1, sizeof(*store->doubtful));
+	if (!store->stale || !store->doubtful)
+		return STATUS_NO_MEMORY;
+	/* The rows' numbers are those of the file, the flags those of the order. */
+	enum status status = contradiction_find(&store->old, SAME_RUN, &found, NULL, NULL);
+	if (store->old.n_rows)
+		qsort(store->old.row, store->old.n_rows, sizeof(*store->old.row), path_order);
+	if (status == STATUS_OK)
+		status = contradiction_find(&store->old, SAME_RUN, &again, store->doubtful, store->stale);
+	if (status == STATUS_OK && found.first) {
+		text_quote(store->path, name, sizeof name);
+		error_set(&store->doubt, STATUS_FORMAT,
+			  "'%s' rows %zu and %zu, of the same fit, differ in %s: such fits are made again", name,
+			  found.first, found.second, result_columns[found.column].name);
+	}
+	return status;
+}
+
 /* Reads what an earlier run left and cuts off the rest of an interrupted write. */
 static enum status resume_old(struct store *store, struct error *error)
 {
@@ -131,11 +156,8 @@ static enum status resume_old(struct store *store, struct error *error)
 		if (status != STATUS_OK)
 			return status;
 	}
-	store->stale = calloc(store->old.n_rows + 1, sizeof(*store->stale));
-	if (!store->stale)
+	if (sort_old(store) != STATUS_OK)
 		return cannot(error, "read", store->path, ENOMEM);
-	if (store->old.n_rows)
-		qsort(store->old.row, store->old.n_rows, sizeof(*store->old.row), path_order);
 	/* The last run was killed when it had made the backup: what is appended must not appear there. */
 	char *backup = output_is_backup(&store->output) ? output_backup_name(&store->output) : NULL;
 	if (backup)
@@ -191,7 +213,7 @@ bool store_has(const struct store *store, const struct result_source *source, co
 		char *const *row = store->old.row[i];
 		if (strcmp(row[RESULT_PATH], source->path))
 			break;
-		if (is_current(row, source) && (!ndf || !strcmp(row[RESULT_NDF], ndf)))
+		if (is_current(row, source) && !store->doubtful[i] && (!ndf || !strcmp(row[RESULT_NDF], ndf)))
 			return true;
 	}
 	return false;
@@ -202,7 +224,7 @@ void store_drop_stale(struct store *store, const struct result_source *source)
 	for (size_t i = first_old(store, source->path); i < store->old.n_rows; i++) {
 		if (strcmp(store->old.row[i][RESULT_PATH], source->path))
 			break;
-		store->stale[i] = !is_current(store->old.row[i], source);
+		store->stale[i] |= store->doubtful[i] || !is_current(store->old.row[i], source);
 	}
 }
 
@@ -334,5 +356,6 @@ void store_close(struct store *store)
 	output_close(&store->output);
 	csv_table_free(&store->old);
 	free(store->stale);
+	free(store->doubtful);
 	*store = (struct store){.output = {.fd = -1}};
 }

@@ -16,15 +16,18 @@ struct store {
 	bool headed;          /* the header line stands there */
 	struct csv_table old; /* --resume: rows of the earlier run, in order of path and ndf */
 	bool *stale;          /* of each old row: it is left out when the table is written anew */
+	bool *doubtful;       /* of each old row: others of the same fit differ from it */
+	struct error doubt;   /* "" or which rows contradict each other, for a warning */
 };
 
 /* store_open - prepares to write to `path`, which changes only when the first row comes.
- * resume: reads the rows of an existing table; the rest of an interrupted write behind them is removed.
+ * resume: reads the rows of an existing table; the rest of an interrupted write behind them is removed. Rows of one fit that
+ * contradict each other count for none, and store->doubt names the first two; of equal ones the first counts.
  * Errors: STATUS_IO (also: another process writes there; resume, and it is no file but written in order),
  * STATUS_NO_MEMORY, STATUS_FORMAT (resume, and the file is no result table of this version). */
 MUST_CHECK enum status store_open(struct store *store, const char *path, bool resume, struct error *error);
 
-/* store_has - whether the earlier run left a row of this file, bytes (any, where they are not known), options and
+/* store_has - whether the earlier run left a row, and none that contradicts it, of this file, bytes (any, where they are not known), options and
  * version, for the NDF of that name (NULL: for some NDF) that did not fail. Safe from several threads. */
 bool store_has(const struct store *store, const struct result_source *source, const char *ndf);
 /* store_drop_stale - the old rows of source->path for which store_has() does not hold will not be kept. */
