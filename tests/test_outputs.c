@@ -10,6 +10,7 @@
 #include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 
 /* A fit that takes a moment. */
 #define CHEAP "--ndf ggx --sigma 0.2 --ior 1.5 --max-theta 5"
@@ -19,12 +20,17 @@
 /* A file system without hard links, for what this program itself writes. */
 static bool no_links;
 
-int link(const char *from, const char *to)
+int linkat(int from_at, const char *from, int to_at, const char *to, int flags)
 {
 	if (no_links) {
 		errno = EPERM;
 		return -1;
 	}
+	return (int)syscall(SYS_linkat, from_at, from, to_at, to, flags);
+}
+
+int link(const char *from, const char *to)
+{
 	return linkat(AT_FDCWD, from, AT_FDCWD, to, 0);
 }
 
@@ -155,8 +161,25 @@ static void a_backup_that_is_the_table_itself(void **state)
 	(void)state;
 	shell("cp a.csv q.csv; ln q.csv q.csv~; exec \"$STDFIT\" b.binary " CHEAP " -o q.csv");
 	expect_code(0);
-	shell("cmp a.csv q.csv~; grep -c material q.csv; wc -l <q.csv; ls -a | grep tmp$");
-	assert_string_equal(last.out, "1\n2\n");
+	shell("cmp a.csv q.csv~; cut -d, -f1,2 q.csv; ls -a | grep tmp$");
+	assert_string_equal(last.out, "material,ndf\nb,ggx\n");
+	/* A run that is killed then, before it writes the table anew. */
+	struct store store;
+	struct error error;
+	struct csv_table rows = read_table("b.csv");
+	shell("cp a.csv q.csv; ln -f q.csv q.csv~");
+	assert_int_equal(store_open(&store, "q.csv", false, &error), STATUS_OK);
+	assert_int_equal(store_append(&store, &rows, &error), STATUS_OK);
+	store_close(&store);
+	shell("cmp a.csv q.csv~; cmp b.csv q.csv");
+	assert_string_equal(last.out, "");
+	shell("cp a.csv q.csv; ln -f q.csv q.csv~");
+	assert_int_equal(store_open(&store, "q.csv", true, &error), STATUS_OK);
+	assert_int_equal(store_append(&store, &rows, &error), STATUS_OK);
+	store_close(&store);
+	csv_table_free(&rows);
+	shell("test -e q.csv~ && ! cmp a.csv q.csv~; cut -d, -f1,2 q.csv");
+	assert_string_equal(last.out, "material,ndf\na,ggx\nb,ggx\n");
 	shell("cp a.csv q.csv; ln -f q.csv q.csv~; exec \"$STDFIT\" a.binary b.binary " CHEAP " --resume -o q.csv");
 	expect_code(0);
 	assert_string_equal(last.err, "");
@@ -373,7 +396,7 @@ static void rows_that_contradict_each_other(void **state)
 	expect_error(0, "of the same fit, differ in error: such fits are made again");
 	shell("\"$STDFIT\" merge a.csv b.csv | cut -d, -f1-30 >both; cut -d, -f1-30 odd.csv | cmp - both; \"$STDFIT\" "
 	      "compare "
-	      "odd.csv >compared; grep -c 0.75 odd.csv~");
+	      "odd.csv >compared; grep -c ggx,0.75, odd.csv~");
 	expect_code(0);
 	assert_string_equal(last.out, "1\n");
 	/* Rows that agree count once. */
