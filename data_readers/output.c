@@ -13,9 +13,18 @@
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 #include <sys/vfs.h>
+#include <time.h>
 #include <unistd.h>
 
-enum { LINKS_MAX = 40, TEMP_NAME_SIZE = 64, TEMP_ATTEMPTS = 10000, LOCK_ATTEMPTS = 1000, COPY_SIZE = 1 << 16 };
+enum {
+	LINKS_MAX = 40,
+	TEMP_NAME_SIZE = 64,
+	TEMP_ATTEMPTS = 10000,
+	LOCK_ATTEMPTS = 1000,
+	LOCK_WAITS = 50,
+	LOCK_WAIT_NS = 20000000, /* times LOCK_WAITS: a second */
+	COPY_SIZE = 1 << 16
+};
 
 /* Names */
 
@@ -104,13 +113,6 @@ static int open_again(const char *path, int flags)
 	return fd;
 }
 
-static void close_silently(int fd)
-{
-	const int errnum = errno;
-	close(fd);
-	errno = errnum;
-}
-
 static bool is_file(const char *path, int fd)
 {
 	struct stat named, open_one;
@@ -123,6 +125,18 @@ bool output_is_there(const struct output *output)
 	return output->fd >= 0 && is_file(output->target, output->fd);
 }
 
+/* Locks an open file; false: another process has the lock. A process that was killed has it until the system has cleaned up,
+ * so this waits a moment. Where the file system has no locks, all is well. */
+static bool lock(int fd)
+{
+	for (int wait = 0; flock(fd, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK; wait++) {
+		if (wait == LOCK_WAITS)
+			return false;
+		nanosleep(&(struct timespec){.tv_nsec = LOCK_WAIT_NS}, NULL);
+	}
+	return true;
+}
+
 /* Opens the file of this name and locks it. A writer that was faster may have given the name to another file before the
  * lock was had: then that one is tried. Returns -1 and errno; EWOULDBLOCK: another process has the lock. */
 static int open_locked(const char *path, int flags)
@@ -131,8 +145,9 @@ static int open_locked(const char *path, int flags)
 		const int fd = open_again(path, flags);
 		if (fd < 0)
 			return -1;
-		if (flock(fd, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK) {
-			close_silently(fd);
+		if (!lock(fd)) {
+			close(fd);
+			errno = EWOULDBLOCK;
 			return -1;
 		}
 		if (is_file(path, fd) || attempt == LOCK_ATTEMPTS)
