@@ -44,6 +44,16 @@ MUST_CHECK enum stdfit_status api_class_ndf(const struct stdfit_ndf *ndf, const 
 MUST_CHECK enum stdfit_status api_model(const struct stdfit_model *model, const struct stdfit_ndf *ndf,
 					struct cook_torrance *inner, struct stdfit_error *error);
 
+/* api_isotropic - whether sigma_x and sigma_y are one. */
+MUST_CHECK enum stdfit_status api_isotropic(const struct ndf *ndf, struct stdfit_error *error);
+
+static inline void api_put(double *out, struct vec3 v)
+{
+	out[0] = v.x;
+	out[1] = v.y;
+	out[2] = v.z;
+}
+
 static inline struct vec3 api_vec(const double *d)
 {
 	return (struct vec3){d[0], d[1], d[2]};
