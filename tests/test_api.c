@@ -5,6 +5,7 @@
 #include "fit/stdfit.h"
 #include "src/ndf.h"
 #include "src/vndf.h"
+#include <limits.h>
 #include <pthread.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -234,6 +235,12 @@ static void energy_and_kurtosis_have_their_known_values(void **state)
 	assert_true(fabs(albedo[0] - 1.5) < 1e-3 && fabs(albedo[1] - 1) < 1e-3);
 	assert_true(theta_i >= 0 && theta_i <= M_PI / 2);
 	expect(stdfit_ndf_new(&skew, "ggx", 0.1, 0.3, 2, NULL, &error), STDFIT_OK, "");
+	stdfit_ndf *const gaussian = new_ndf("beckmann", 0.5, 0);
+
+	/* the greatest even order; it neither overflows nor takes seconds */
+	expect(stdfit_ndf_moment(gaussian, 0, INT_MAX - 1, &value, &error), STDFIT_OK, "");
+	assert_true(isinf(value));
+	stdfit_ndf_free(gaussian);
 	expect(stdfit_ndf_excess_kurtosis(skew, &value, &error), STDFIT_DOMAIN, "no kurtosis");
 	expect(stdfit_ndf_excess_kurtosis(ndf, NULL, &error), STDFIT_DOMAIN, "NULL");
 	expect(stdfit_ndf_furnace(skew, NULL, &value, &error), STDFIT_DOMAIN, "isotropic");
