@@ -138,6 +138,10 @@ static void null_and_nonsense_are_refused(void **state)
 	expect(stdfit_ndf_new(&other, NULL, 1, 1, 2, NULL, &error), STDFIT_DOMAIN, "(NULL)");
 	assert_null(other);
 	expect(stdfit_ndf_new(&other, "std", 1, 1, 1.5, NULL, &error), STDFIT_DOMAIN, "gamma 1.5");
+	expect(stdfit_ndf_new(&other, "a\nb\x1b", 1, 1, 2, NULL, &error), STDFIT_DOMAIN, "a\\x0ab\\x1b");
+	expect(stdfit_fresnel("\n", 1, 1, 0, value, &error), STDFIT_DOMAIN, "'\\x0a'");
+	value[1] = INFINITY;
+	expect(stdfit_ndf_weight(ndf, NULL, up, 1, up, value + 1, value, &error), STDFIT_DOMAIN, "found inf");
 	expect(stdfit_ndf_new(&other, "std", 0, 1, 2, NULL, &error), STDFIT_DOMAIN, "expected sigma in");
 	expect(stdfit_ndf_new(&other, "gtr", 1, 2, 2, NULL, &error), STDFIT_DOMAIN, "gtr is isotropic");
 	expect(stdfit_ndf_new(&other, "ggx", 1, 1, 2, "rational", &error), STDFIT_UNSUPPORTED, "rational");

@@ -32,8 +32,7 @@ static enum stdfit_status init_class(struct stdfit_ndf *ndf, const char *name, d
 	enum lambda_form form = LAMBDA_EXACT;
 
 	if (!class || ndf_is_tabulated(class))
-		return api_fail(error, STATUS_DOMAIN, "ndf: there is none with parameters called '%.100s'",
-				name ? name : "(NULL)");
+		return api_unknown(error, "ndf with parameters", name ? name : "(NULL)");
 	if (lambda && lambda_form_find(lambda, &form) != STATUS_OK)
 		return api_unknown(error, "lambda", lambda);
 	if (!(sigma_x >= NDF_SIGMA_MIN && sigma_x <= NDF_SIGMA_MAX && sigma_y >= NDF_SIGMA_MIN &&
@@ -303,8 +302,8 @@ enum stdfit_status stdfit_ndf_weight(const stdfit_ndf *ndf, const char *gaf, con
 	if (status == STDFIT_OK && n > 0 && (!pdf || !weight))
 		status = api_fail(error, STATUS_DOMAIN, "pdf or weight is NULL");
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
-		if (!(pdf[i] > 0))
-			status = api_fail(error, STATUS_DOMAIN, "expected pdf above 0, found %g", pdf[i]);
+		if (!(pdf[i] > 0 && isfinite(pdf[i])))
+			status = api_fail(error, STATUS_DOMAIN, "expected a finite pdf above 0, found %g", pdf[i]);
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
 		weight[i] = vndf_weight(inner, form, api_vec(wi), api_vec(normals + 3 * i), pdf[i]);
 	return status;
