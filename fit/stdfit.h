@@ -257,7 +257,7 @@ struct stdfit_options {
 	void (*trace)(void *data, const struct stdfit_step *step);
 	void *trace_data;
 	/* The fit stops soon after this has become other than 0; NULL: never. May be set by a signal handler, another
-	 * thread or the trace. */
+	 * thread or the trace, which runs beside threads that read it: those two store it atomically. */
 	const volatile int *cancel;
 };
 
