@@ -47,6 +47,10 @@ struct measurement {
 	size_t n_below_horizon;      /* scattered: entries left out for a direction at or below the horizon */
 	uint64_t file_size;          /* bytes of the file read; 0 for a table that was made */
 	uint64_t file_hash;          /* XXH3, 64 bits, of all those bytes, as `xxhsum -H3` prints it */
+	const char *format;          /* name of the file's format, static; NULL for what was made */
+	int n_channels;              /* scattered: values of an entry in the file: 1, 3 or the number of wavelengths */
+	size_t n_missing;            /* scattered: entries left out because the file has no value there */
+	size_t n_out_of_gamut;       /* scattered: entries left out for a colour with a negative part in linear sRGB */
 };
 
 /* bins_name - "node" or "centre". */
