@@ -128,6 +128,7 @@ enum status entry_list_finish(struct entry_list *list, struct measurement *measu
 	s->symmetry = list->has_symmetry       ? list->symmetry
 		      : list->several_azimuths ? SYMMETRY_ANISOTROPIC
 					       : SYMMETRY_ISOTROPIC;
+	measurement->n_channels = list->n_channels;
 	measurement->n_negative = list->n_negative;
 	measurement->n_nonfinite = list->n_nonfinite;
 	measurement->n_below_horizon = list->n_below_horizon;

@@ -18,6 +18,7 @@ struct entry_list {
 	size_t n;
 	bool from_grid;    /* the solid angles are the file's own */
 	bool gray;         /* one channel */
+	int n_channels;    /* values of an entry in the file */
 	bool has_symmetry; /* the file tells the symmetry; if not, several azimuths of wi mean anisotropic */
 	enum symmetry symmetry;
 	bool several_azimuths;

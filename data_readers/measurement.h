@@ -99,4 +99,8 @@ int bins_mirror(enum bins bins, int k);
  * above 45 degrees computed from the complement, and exactly 0 or 1 where they should be. */
 struct halfdiff_trig bins_trig(enum bins bins, int i, int j, int k);
 
+/* cell_measure - solid angle of a cell in wi and wo, the integral of 4 cos_d dw_h dw_d over all phi_h and
+ * [i, i+1) x [j, j+1) x [k, k+1): sr^2. */
+double cell_measure(int i, int j);
+
 #endif
