@@ -192,7 +192,7 @@ static enum status add_row(const struct head *head, const struct line_reader *li
 			   enum quantity quantity, struct entry_list *list, struct error *why)
 {
 	double x[COLUMNS_MAX], rgb[MERL_CHANNELS];
-	const struct channels channels = {.n = (size_t)head->n_out};
+	const struct channels channels = {.n = (size_t)head->n_out, .derived = head->output->xyz};
 	struct vec3 wi, wo;
 	size_t n;
 	const enum status status = line_numbers(lines, line, x, COLUMNS_MAX, &n, why);

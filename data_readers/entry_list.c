@@ -47,12 +47,11 @@ enum status entry_list_add(struct entry_list *list, const struct entry *entry, b
 		list->n_below_horizon++;
 		return STATUS_OK;
 	}
-	if (!finite || negative) {
-		list->n_nonfinite += !finite;
-		list->n_negative += finite && !derived;
-		list->n_out_of_gamut += finite && derived;
+	list->n_nonfinite += !finite;
+	list->n_negative += finite && negative && !derived;
+	list->n_out_of_gamut += finite && negative && derived;
+	if (!finite || (negative && (!derived || list->gamut == GAMUT_MASK)))
 		return STATUS_OK;
-	}
 	if (!list->last || list->last->n == BLOCK) {
 		struct entry_block *block = malloc(sizeof *block);
 		if (!block)

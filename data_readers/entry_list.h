@@ -4,6 +4,7 @@
 #define ENTRY_LIST_H
 
 #include "data_readers/measurement.h"
+#include "data_readers/quantity.h"
 
 /* struct entry - one as it was read. */
 struct entry {
@@ -17,6 +18,7 @@ struct entry_list {
 	struct entry_block *first, *last;
 	size_t n;
 	bool from_grid;    /* the solid angles are the file's own */
+	enum gamut gamut;  /* what becomes of a colour out of gamut */
 	bool gray;         /* one channel */
 	int n_channels;    /* values of an entry in the file */
 	bool has_symmetry; /* the file tells the symmetry; if not, several azimuths of wi mean anisotropic */
@@ -30,8 +32,8 @@ struct entry_list {
 #define ENTRY_HORIZON 1e-6 /* a direction whose cosine is not above this counts as below the horizon */
 
 /* entry_list_add - adds an entry, or leaves it out and counts it: for a direction at or below the horizon; else for a value
- * that is not finite or beyond float; else for one that is negative (n_out_of_gamut if `derived`: the value was computed
- * from a spectrum). What is too small for a normal float becomes 0. STATUS_NO_MEMORY. */
+ * that is not finite or beyond float; else for one that is negative. If `derived`, the values were computed from a spectrum, and
+ * the list's `gamut` says what becomes of a negative one; the entry is counted in n_out_of_gamut in any case. What is too small for a normal float becomes 0. STATUS_NO_MEMORY. */
 MUST_CHECK enum status entry_list_add(struct entry_list *list, const struct entry *entry, bool derived);
 
 /* entry_list_finish - moves the entries and counts into a measurement; estimates the solid angles unless the file has them.

@@ -89,6 +89,13 @@ enum status measurement_scattered(struct measurement *measurement, size_t n)
 	return STATUS_OK;
 }
 
+enum status measurement_require_table(const struct measurement *measurement, const char *what, struct error *why)
+{
+	return measurement->scattered
+		       ? error_set(why, STATUS_UNSUPPORTED, "%s takes a table, these are scattered samples", what)
+		       : STATUS_OK;
+}
+
 void measurement_free(struct measurement *measurement)
 {
 	scattered_free(measurement->scattered);

@@ -50,7 +50,7 @@ struct measurement {
 	const char *format;          /* name of the file's format, static; NULL for what was made */
 	int n_channels;              /* scattered: values of an entry in the file: 1, 3 or the number of wavelengths */
 	size_t n_missing;            /* scattered: entries left out because the file has no value there */
-	size_t n_out_of_gamut;       /* scattered: entries left out for a colour with a negative part in linear sRGB */
+	size_t n_out_of_gamut;       /* scattered: entries whose colour has a negative part in linear sRGB */
 };
 
 /* bins_name - "node" or "centre". */
@@ -66,6 +66,9 @@ MUST_CHECK enum status measurement_reserve(struct measurement *measurement, int 
 /* measurement_scattered - room for n >= 1 scattered entries, all values unset, isotropic. STATUS_NO_MEMORY; *measurement is
  * then cleared. A reader that finds fewer lowers scattered->n. */
 MUST_CHECK enum status measurement_scattered(struct measurement *measurement, size_t n);
+/* measurement_require_table - STATUS_UNSUPPORTED, and that `what` ("fit", ...) needs a table, for scattered entries. */
+MUST_CHECK enum status measurement_require_table(const struct measurement *measurement, const char *what,
+						 struct error *why);
 /* measurement_free - releases the planes and clears the struct; harmless on a zeroed one. */
 void measurement_free(struct measurement *measurement);
 

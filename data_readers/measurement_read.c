@@ -125,7 +125,7 @@ static enum status read_lines(const char *path, const struct format *format, con
 			      struct measurement *measurement, struct error *why)
 {
 	struct line_reader lines;
-	struct entry_list list = {0};
+	struct entry_list list = {.gamut = options->gamut};
 	struct measurement file = {0};
 	enum status status = line_reader_open(&lines, path, format->text.what, why);
 	if (status == STATUS_OK)

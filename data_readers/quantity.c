@@ -23,6 +23,23 @@ enum status quantity_find(const char *name, enum quantity *quantity)
 	return STATUS_OK;
 }
 
+static const char *const gamut_names[GAMUT_COUNT] = {[GAMUT_CLIP] = "clip", [GAMUT_MASK] = "mask"};
+
+const char *gamut_name(enum gamut gamut)
+{
+	return names_at(gamut_names, GAMUT_COUNT, (int)gamut);
+}
+
+enum status gamut_find(const char *name, enum gamut *gamut)
+{
+	const int found = names_find(gamut_names, GAMUT_COUNT, name);
+
+	if (found < 0)
+		return STATUS_DOMAIN;
+	*gamut = (enum gamut)found;
+	return STATUS_OK;
+}
+
 double quantity_factor(enum quantity quantity, double cos_o)
 {
 	if (quantity == QUANTITY_BRDF_COS)

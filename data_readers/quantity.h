@@ -21,10 +21,22 @@ MUST_CHECK enum status quantity_find(const char *name, enum quantity *quantity);
 /* quantity_factor - by what a number of the file is multiplied to give the BRDF. */
 double quantity_factor(enum quantity quantity, double cos_o);
 
+/* What becomes of an entry whose colour, computed from a spectrum, has a negative part in linear sRGB. */
+enum gamut {
+	GAMUT_CLIP, /* that part becomes 0 */
+	GAMUT_MASK, /* the entry is left out */
+	GAMUT_COUNT
+};
+
+/* gamut_name - "clip", "mask"; gamut_find - the reverse, as above. */
+const char *gamut_name(enum gamut gamut);
+MUST_CHECK enum status gamut_find(const char *name, enum gamut *gamut);
+
 /* struct read_options - how to read. */
 struct read_options {
 	int threads;            /* less than 1 counts as 1; changes no result */
 	enum quantity quantity; /* of formats that can have more than one; wins over what the file says */
+	enum gamut gamut;       /* of spectra */
 };
 
 #endif

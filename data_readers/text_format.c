@@ -61,7 +61,7 @@ enum status channels_add(const struct channels *channels, enum quantity quantity
 		spectrum_rgb(channels->weight, value, channels->n, entry.value);
 	for (size_t c = 0; c < MERL_CHANNELS; c++)
 		entry.value[c] = factor * (channels->spectral ? entry.value[c] : value[channels->n == 1 ? 0 : c]);
-	return entry_list_add(list, &entry, channels->spectral);
+	return entry_list_add(list, &entry, channels->spectral || channels->derived);
 }
 
 struct vec3 direction(double theta, double phi)

@@ -26,6 +26,7 @@ struct text_format {
 struct channels {
 	size_t n;
 	bool spectral;
+	bool derived;   /* the three were computed from something else */
 	double *weight; /* of spectrum.h; owned; NULL if not spectral */
 	double *nm;     /* owned, likewise */
 };

@@ -240,7 +240,7 @@ static void place(const struct grid *grid, const size_t index[AXES], struct vec3
 
 static enum status add_entry(const struct grid *grid, size_t at, enum quantity quantity, struct entry_list *list)
 {
-	const struct channels channels = {.n = grid->xyz ? MERL_CHANNELS : 1};
+	const struct channels channels = {.n = grid->xyz ? MERL_CHANNELS : 1, .derived = grid->xyz};
 	double value[MERL_CHANNELS], solid_angle;
 	size_t index[AXES], rest = at;
 	struct vec3 wi, wo;
