@@ -70,6 +70,12 @@ const struct option_spec option_specs[] = {
 	 AT(fit.criterion.weight), 0, 0},
 	{"bins", 0, KIND_BINS, SEARCHES | MODEL | SOURCES | INFO, RECORDED, "NAME",
 	 "where the entries of a table stand", AT(fit.criterion.bins), 0, 0},
+	{"quantity", 0, KIND_QUANTITY, SEARCHES | EVAL | SOURCES | INFO, RECORDED_GIVEN, "NAME",
+	 "what the numbers of the file are, whatever it says: the BRDF (1/sr), times cos theta_o, or times pi",
+	 AT(quantity), 0, 0},
+	{"gamut", 0, KIND_GAMUT, SEARCHES | EVAL | SOURCES | INFO, RECORDED_GIVEN, "NAME",
+	 "a colour of a spectrum that has a negative part in linear sRGB: set that to 0, or leave the entry out",
+	 AT(gamut), 0, 0},
 	{"max-theta", 0, KIND_NUMBER, SEARCHES | EVAL | SOURCES, RECORDED, "DEG",
 	 "leave out entries whose theta_i or theta_o exceeds this", AT(fit.criterion.max_theta), 1, 90},
 	{"unbounded", 0, KIND_ON, SEARCHES | SOURCES, RECORDED, NULL, "kd and ks may exceed 1", AT(fit.unbounded), 0,
@@ -193,6 +199,10 @@ const char *option_choice(enum option_kind kind, int i)
 		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
 	case KIND_BINS:
 		return i < BINS_COUNT ? bins_name((enum bins)i) : NULL;
+	case KIND_QUANTITY:
+		return i < QUANTITY_COUNT ? quantity_name((enum quantity)i) : NULL;
+	case KIND_GAMUT:
+		return i < GAMUT_COUNT ? gamut_name((enum gamut)i) : NULL;
 	case KIND_PHI:
 		return i < 2 ? (i ? "360" : "180") : NULL;
 	case KIND_SAMPLING:
@@ -218,6 +228,10 @@ static enum status choice_find(enum option_kind kind, const char *text, void *va
 		return fresnel_find(text, value);
 	case KIND_WEIGHT:
 		return weight_find(text, value);
+	case KIND_QUANTITY:
+		return quantity_find(text, value);
+	case KIND_GAMUT:
+		return gamut_find(text, value);
 	case KIND_SAMPLING:
 		return sampling_find(text, value);
 	case KIND_FORMAT:
@@ -481,6 +495,12 @@ void option_write(FILE *file, const struct options *options, const struct option
 		break;
 	case KIND_BINS:
 		fputs(bins_name(*(const enum bins *)value), file);
+		break;
+	case KIND_QUANTITY:
+		fputs(quantity_name(*(const enum quantity *)value), file);
+		break;
+	case KIND_GAMUT:
+		fputs(gamut_name(*(const enum gamut *)value), file);
 		break;
 	case KIND_SAMPLING:
 		fputs(sampling_name(*(const enum sampling *)value), file);

@@ -105,11 +105,18 @@ static bool is_recorded(const struct options *options, const struct option_spec 
 		return true;
 	case RECORDED_WITHIN:
 		return !isnan(options->within);
+	case RECORDED_GIVEN:
+		return options->given[spec - option_specs];
 	case RECORDED_ALGORITHM:
 		return options->fit.algorithm;
 	default:
 		return false;
 	}
+}
+
+struct read_options options_reading(const struct options *options, int threads)
+{
+	return (struct read_options){.threads = threads, .quantity = options->quantity, .gamut = options->gamut};
 }
 
 char *options_text(const struct options *options)

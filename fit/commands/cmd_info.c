@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit info - what is in a MERL file. */
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/options.h"
 #include "fit/cli/report.h"
@@ -178,7 +178,8 @@ static enum status inspect(struct csv_table *table, const struct options *option
 {
 	struct measurement measurement;
 	struct census census;
-	enum status status = merl_read(path, options->fit.threads, &measurement, error);
+	const struct read_options reading = options_reading(options, options->fit.threads);
+	enum status status = measurement_read(path, &reading, &measurement, error);
 	if (status != STATUS_OK)
 		return status;
 	status = take_census(&measurement, options->fit.criterion.bins, &census);

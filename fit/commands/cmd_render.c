@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit render - spheres of measured materials beside spheres of their models, and how different they look. */
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/files.h"
 #include "fit/cli/lighting.h"
@@ -214,7 +214,7 @@ static enum status show_source(struct render *render, const char *path, struct m
 	struct chosen chosen;
 	enum status status = choose(render, source, path, &chosen, error);
 	if (status == STATUS_OK && !source->measurement.value[0])
-		status = merl_read(path, render->options->fit.threads, &source->measurement, error);
+		status = measurement_read(path, &chosen.model[0]->reading, &source->measurement, error);
 	for (int i = 0; i < chosen.n && status == STATUS_OK && render->from_table; i++)
 		status = result_check_input(chosen.model[i]->input, &source->measurement, path, error);
 	if (status != STATUS_OK)

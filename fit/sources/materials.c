@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/sources/materials.h"
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/files.h"
 #include "fit/cli/messages.h"
@@ -236,7 +236,8 @@ static enum status read_samples(const struct material *material, int threads, st
 				struct error *error)
 {
 	char *const *row = material->row[0];
-	enum status status = merl_read(row[RESULT_PATH], threads, measurement, error);
+	const struct read_options reading = result_reading(row, threads);
+	enum status status = measurement_read(row[RESULT_PATH], &reading, measurement, error);
 	if (status != STATUS_OK)
 		return status;
 	status = result_check_input(row[RESULT_INPUT], measurement, row[RESULT_PATH], error);
