@@ -446,7 +446,7 @@ static double azimuth_degrees(struct vec3 v)
 static void write_row(struct writing *w, struct vec3 wi, struct vec3 wo, const float value[MERL_CHANNELS],
 		      double solid_angle)
 {
-	fprintf(w->stream, "%.12g,%.12g,%.12g,%.12g", polar_degrees(wi), azimuth_degrees(wi), polar_degrees(wo),
+	fprintf(w->stream, "%.15g,%.15g,%.15g,%.15g", polar_degrees(wi), azimuth_degrees(wi), polar_degrees(wo),
 		azimuth_degrees(wo));
 	for (int c = 0; c < (w->gray ? 1 : MERL_CHANNELS); c++)
 		fprintf(w->stream, ",%.9g", (double)value[c]);
