@@ -10,6 +10,24 @@ enum { HUGE_PAGE = 2 << 20 };
 
 static const char *const bins_names[BINS_COUNT] = {[BINS_NODE] = "node", [BINS_CENTRE] = "centre"};
 
+static const char *const symmetry_names[SYMMETRY_COUNT] = {
+	[SYMMETRY_ISOTROPIC] = "isotropic", [SYMMETRY_PLANE] = "plane", [SYMMETRY_ANISOTROPIC] = "anisotropic"};
+
+const char *symmetry_name(enum symmetry symmetry)
+{
+	return names_at(symmetry_names, SYMMETRY_COUNT, (int)symmetry);
+}
+
+enum status symmetry_find(const char *name, enum symmetry *symmetry)
+{
+	const int found = names_find(symmetry_names, SYMMETRY_COUNT, name);
+
+	if (found < 0)
+		return STATUS_DOMAIN;
+	*symmetry = (enum symmetry)found;
+	return STATUS_OK;
+}
+
 const char *bins_name(enum bins bins)
 {
 	return names_at(bins_names, BINS_COUNT, (int)bins);

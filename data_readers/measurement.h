@@ -23,9 +23,10 @@ enum { MERL_THETA_H = 90, MERL_THETA_D = 90, MERL_CHANNELS = 3 };
 
 /* How a sample may be turned without changing what is measured. */
 enum symmetry {
-	SYMMETRY_ISOTROPIC,  /* by any angle about its normal */
-	SYMMETRY_PLANE,      /* not, but it is its own mirror image in the plane y = 0 */
-	SYMMETRY_ANISOTROPIC /* not at all */
+	SYMMETRY_ISOTROPIC,   /* by any angle about its normal */
+	SYMMETRY_PLANE,       /* not, but it is its own mirror image in the plane y = 0 */
+	SYMMETRY_ANISOTROPIC, /* not at all */
+	SYMMETRY_COUNT
 };
 
 /* struct scattered - entries that lie anywhere. What could not be used is not among them, only counted. */
@@ -52,6 +53,11 @@ struct measurement {
 	size_t n_missing;            /* scattered: entries left out because the file has no value there */
 	size_t n_out_of_gamut;       /* scattered: entries whose colour has a negative part in linear sRGB */
 };
+
+/* symmetry_name - "isotropic", "plane", "anisotropic". */
+const char *symmetry_name(enum symmetry symmetry);
+/* symmetry_find - the reverse; STATUS_DOMAIN, *symmetry untouched, for another name. */
+MUST_CHECK enum status symmetry_find(const char *name, enum symmetry *symmetry);
 
 /* bins_name - "node" or "centre". */
 const char *bins_name(enum bins bins);

@@ -3,7 +3,6 @@
 #include "data_readers/atomic_file.h"
 #include "data_readers/text_number.h"
 #include "data_readers/text_quote.h"
-#include "src/names.h"
 #include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
@@ -41,9 +40,6 @@ enum field {
 static const char *const field_names[FIELDS] = {"theta_i",     "phi_i", "theta_o", "phi_o", "wi_x",
 						"wi_y",        "wi_z",  "wo_x",    "wo_y",  "wo_z",
 						"solid_angle", "value", "r",       "g",     "b"};
-
-static const char *const symmetry_names[] = {
-	[SYMMETRY_ISOTROPIC] = "isotropic", [SYMMETRY_PLANE] = "plane", [SYMMETRY_ANISOTROPIC] = "anisotropic"};
 
 /* The line of names, understood. */
 struct layout {
@@ -84,12 +80,10 @@ static enum status read_comment(const char *text, struct layout *layout, struct 
 				 "expected the quantity brdf, brdf_cos or reflectance_factor, found '%s'", value);
 	if (strcmp(key, "symmetry") != 0)
 		return STATUS_OK;
-	const int found = names_find(symmetry_names, SYMMETRY_ANISOTROPIC + 1, value);
-	if (found < 0)
+	if (symmetry_find(value, &layout->symmetry) != STATUS_OK)
 		return error_set(why, STATUS_FORMAT,
 				 "expected the symmetry isotropic, plane or anisotropic, found '%s'", value);
 	layout->has_symmetry = true;
-	layout->symmetry = (enum symmetry)found;
 	return STATUS_OK;
 }
 
@@ -488,7 +482,7 @@ enum status samples_csv_write(const char *path, const struct measurement *measur
 		return status;
 	struct writing w = {.stream = file.stream, .gray = s && s->gray};
 	fprintf(w.stream, "# quantity: brdf\n# symmetry: %s\ntheta_i,phi_i,theta_o,phi_o,%s,solid_angle\n",
-		symmetry_names[s ? s->symmetry : SYMMETRY_ISOTROPIC], w.gray ? "value" : "r,g,b");
+		symmetry_name(s ? s->symmetry : SYMMETRY_ISOTROPIC), w.gray ? "value" : "r,g,b");
 	if (s)
 		write_scattered(&w, s);
 	else

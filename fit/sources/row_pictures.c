@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/sources/row_pictures.h"
 #include "data_readers/measurement_read.h"
+#include "data_readers/resample.h"
 #include "data_readers/text_quote.h"
 
 #include <math.h>
@@ -88,7 +89,10 @@ static enum status render(const struct models *m, char **const *rows, const stru
 	enum status status = read_samples(m, rows, options, &measurement, error);
 	if (status != STATUS_OK)
 		return status;
-	status = pictures_render(&measurement, m->bins, m->shown, m->n, SAMPLING_VISIBLE, light, &sphere, pictures);
+	status = measurement_fill(&measurement, m->bins, options->threads);
+	if (status == STATUS_OK)
+		status = pictures_render(&measurement, m->bins, m->shown, m->n, SAMPLING_VISIBLE, light, &sphere,
+					 pictures);
 	measurement_free(&measurement);
 	return status != STATUS_OK ? cannot(rows[0], status, status_str(status), error) : STATUS_OK;
 }
