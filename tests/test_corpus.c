@@ -58,6 +58,12 @@ static void merl(void **state)
 	run_corpus("merl", fuzz_merl);
 }
 
+static void rgl(void **state)
+{
+	(void)state;
+	run_corpus("rgl", fuzz_rgl);
+}
+
 static void table(void **state)
 {
 	(void)state;
@@ -94,6 +100,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(json_check_knows_json),
 		cmocka_unit_test(merl),
+		cmocka_unit_test(rgl),
 		cmocka_unit_test(table),
 		cmocka_unit_test(command_line),
 	};
