@@ -90,6 +90,13 @@ enum status measurement_scattered(struct measurement *measurement, size_t n)
 	return STATUS_OK;
 }
 
+enum status measurement_require_table(const struct measurement *measurement, const char *what, struct error *why)
+{
+	return measurement->scattered
+		       ? error_set(why, STATUS_UNSUPPORTED, "%s takes a table, these are scattered samples", what)
+		       : STATUS_OK;
+}
+
 void measurement_free(struct measurement *measurement)
 {
 	scattered_free(measurement->scattered);
@@ -150,4 +157,16 @@ struct halfdiff_trig bins_trig(enum bins bins, int i, int j, int k)
 	sincos_deg(at.theta_d, &t.sin_d, &t.cos_d);
 	sincos_deg(at.phi_d, &t.sin_phi, &t.cos_phi);
 	return t;
+}
+
+double cell_measure(int i, int j)
+{
+	const struct halfdiff low = bins_angles(BINS_NODE, i, j, 0), high = bins_angles(BINS_NODE, i + 1, j + 1, 0);
+	const double h0 = low.theta_h, h1 = high.theta_h, d0 = low.theta_d, d1 = high.theta_d;
+	/* cos a - cos b and (sin^2 b - sin^2 a)/2 as products: no cancellation in narrow cells. */
+	const double w_h = 2 * M_PI * 2 * sin((h0 + h1) / 2) * sin((h1 - h0) / 2);
+	const double w_d = sin(d0 + d1) * sin(d1 - d0) / 2;
+
+	/* phi_d is one degree wide in both variants of the table. */
+	return 4 * w_h * w_d * (M_PI / 180);
 }
