@@ -23,8 +23,8 @@ double quantity_factor(enum quantity quantity, double cos_o);
 
 /* What becomes of an entry whose colour, computed from a spectrum, has a negative part in linear sRGB. */
 enum gamut {
-	GAMUT_CLIP, /* that part becomes 0 */
 	GAMUT_MASK, /* the entry is left out */
+	GAMUT_CLIP, /* that part becomes 0 */
 	GAMUT_COUNT
 };
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "data_readers/rgl.h"
+#include "data_readers/entry_list.h"
 #include "data_readers/regular_file.h"
 #include "data_readers/spectrum.h"
 #include "data_readers/tensor_file.h"
 #include "data_readers/text_quote.h"
 #include "data_readers/warp.h"
-#include <float.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +24,7 @@ struct rgl {
 	struct grid rgb[MERL_CHANNELS]; /* f cos_o, over the warped square */
 	bool divided;                   /* by D/(4 sigma) */
 	bool gray;
+	int n_channels; /* of the file */
 };
 
 void rgl_free(struct rgl *rgl)
@@ -212,6 +213,7 @@ static enum status sum_spectra(struct rgl *rgl, const float *spectra, const floa
 			nm[j] = (double)wavelength[j];
 		status = spectrum_weights(nm, n, weight);
 		rgl->gray = !spectrum_has_colour(nm, n);
+		rgl->n_channels = (int)n;
 	}
 	for (size_t slice = 0; slice < slices && status == STATUS_OK; slice++)
 		for (size_t c = 0; c < MERL_CHANNELS; c++) {
@@ -260,6 +262,8 @@ static enum status read_colours(const struct tensor_file *file, struct rgl *rgl,
 
 	if (status != STATUS_OK)
 		return status;
+	if (rgl->n_channels == 0)
+		rgl->n_channels = MERL_CHANNELS;
 	with_params(rgl, &grid);
 	for (size_t c = 0; c < MERL_CHANNELS; c++) {
 		rgl->rgb[c] = grid;
@@ -348,33 +352,10 @@ static bool was_measured(const struct mask *mask, size_t node)
 	return !mask->valid || mask_bit(mask, node) == mask->measured;
 }
 
-struct sorted {
-	struct measurement *measurement;
-	size_t n;
-};
-
-static void add_entry(struct sorted *to, struct vec3 wi, struct vec3 wo, const double f[], double solid_angle)
-{
-	struct scattered *s = to->measurement->scattered;
-	const double low = fmin(f[0], fmin(f[1], f[2])), sum = f[0] + f[1] + f[2];
-
-	if (!(fabs(sum) <= FLT_MAX) || !isfinite(solid_angle)) {
-		to->measurement->n_nonfinite++;
-	} else if (low < 0) {
-		to->measurement->n_negative++;
-	} else {
-		s->wi[to->n] = wi;
-		s->wo[to->n] = wo;
-		for (int c = 0; c < MERL_CHANNELS; c++)
-			s->value[c][to->n] = f[c] < (double)FLT_MIN ? 0 : (float)f[c];
-		s->solid_angle[to->n++] = (float)solid_angle;
-	}
-}
-
 /* The entry of node (x, y) of the square. Nodes that stand for one direction count once: x = 0 is the macroscopic normal
  * for every y, and the last y is the first again. */
-static void node_entry(const struct rgl *rgl, const double param[], double measure, size_t slice, size_t x, size_t y,
-		       struct sorted *to)
+static enum status node_entry(const struct rgl *rgl, const double param[], double measure, size_t slice, size_t x,
+			      size_t y, struct entry_list *list)
 {
 	const struct grid *grid = &rgl->rgb[0];
 	const size_t width = grid->width, height = grid->height;
@@ -386,59 +367,65 @@ static void node_entry(const struct rgl *rgl, const double param[], double measu
 	const double theta = theta_of(p), phi = phi_of(p) + (is_isotropic(rgl) ? param[0] : 0);
 	const struct vec3 m = {sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)};
 	const double dot = vec3_dot(wi, m);
-	const struct vec3 wo = vec3_sub(vec3_scale(m, 2 * dot), wi);
-
-	if (!(wo.z > 1e-6) || !(wi.z > 1e-6) || !(dot > 0)) {
-		to->measurement->n_below_horizon++;
-		return;
-	}
+	struct entry entry = {.wi = wi, .wo = vec3_sub(vec3_scale(m, 2 * dot), wi)};
 	const double factor = rgl->divided ? grid_at(&rgl->ndf, p, param) /
 						     (4 * grid_at(&rgl->sigma, to_square(param[1], param[0]), param))
 					   : 1;
-	double f[MERL_CHANNELS];
 	for (int c = 0; c < MERL_CHANNELS; c++)
-		f[c] = (double)rgl->rgb[c].value[slice * rgl->rgb[c].stride + y * width + x] * factor / wo.z;
-	/* The cell of the square, through the warp, theta = pi/2 x^2 and phi = 2 pi y, and the reflection. */
+		entry.value[c] =
+			(double)rgl->rgb[c].value[slice * rgl->rgb[c].stride + y * width + x] * factor / entry.wo.z;
+	/* The cell of the square, through the warp, theta = pi/2 x^2 and phi = 2 pi y, and the reflection. Where the warp
+	 * folds, the cell has no size. */
 	const double edge = x == 0 || x + 1 == width ? 0.5 : 1;
-	const double square = edge / ((double)(width - 1) * (double)(height - 1) * pdf);
-	const double cell = square * 2 * M_PI * M_PI * p.x * sin(theta) * 4 * dot;
-	add_entry(to, wi, wo, f, cell * measure);
+	const double square = pdf > 0 ? edge / ((double)(width - 1) * (double)(height - 1) * pdf) : 0;
+	entry.solid_angle = fmin(square * 2 * M_PI * M_PI * p.x * sin(theta) * 4 * dot * measure, 4 * M_PI * M_PI);
+	return entry_list_add(list, &entry, true);
 }
 
-static enum status make_entries(const struct rgl *rgl, const struct tensor *valid, struct measurement *measurement,
-				struct error *why)
+static enum status list_entries(const struct rgl *rgl, const struct mask *mask, struct entry_list *list)
 {
 	const size_t width = rgl->rgb[0].width, height = rgl->rgb[0].height;
 	const size_t n_phi = is_isotropic(rgl) ? 1 : rgl->n_phi;
-	const size_t n_nodes = n_phi * rgl->n_theta * width * height;
-	const struct mask mask = mask_of(valid, n_nodes);
-	struct sorted to = {measurement, 0};
-	const enum status status = measurement_scattered(measurement, n_nodes);
+	enum status status = STATUS_OK;
 
-	if (status != STATUS_OK)
-		return error_set(why, status, "%s", status_str(status));
-	struct scattered *s = measurement->scattered;
-	s->symmetry = is_isotropic(rgl)           ? SYMMETRY_ISOTROPIC
-		      : azimuth_repeats(rgl) >= 4 ? SYMMETRY_PLANE
-						  : SYMMETRY_ANISOTROPIC;
-	s->gray = rgl->gray;
-	for (size_t phi = 0; phi < n_phi; phi++)
-		for (size_t theta = 0; theta < rgl->n_theta; theta++) {
-			const double param[] = {(double)rgl->phi_i[phi], (double)rgl->theta_i[theta]};
-			const double measure = incident_measure(rgl, phi, theta);
-			const size_t slice = phi * rgl->n_theta + theta;
+	for (size_t slice = 0; slice < n_phi * rgl->n_theta; slice++) {
+		const size_t phi = slice / rgl->n_theta, theta = slice % rgl->n_theta;
+		const double param[] = {(double)rgl->phi_i[phi], (double)rgl->theta_i[theta]};
+		const double measure = incident_measure(rgl, phi, theta);
 
-			for (size_t y = 0; y + 1 < height; y++)
-				for (size_t x = y == 0 ? 0 : 1; x < width; x++)
-					if (was_measured(&mask, (slice * height + y) * width + x))
-						node_entry(rgl, param, measure, slice, x, y, &to);
-		}
-	s->n = to.n;
-	return to.n ? STATUS_OK : error_set(why, STATUS_NO_DATA, "expected some valid entries, found none");
+		for (size_t y = 0; y + 1 < height; y++)
+			for (size_t x = y == 0 ? 0 : 1; x < width && status == STATUS_OK; x++) {
+				if (was_measured(mask, (slice * height + y) * width + x))
+					status = node_entry(rgl, param, measure, slice, x, y, list);
+				else
+					list->n_missing++;
+			}
+	}
+	return status;
 }
 
-static enum status read_bytes(const unsigned char *bytes, size_t size, struct measurement *measurement,
-			      struct error *why)
+static enum status make_entries(const struct rgl *rgl, const struct tensor *valid, enum gamut gamut,
+				struct measurement *measurement, struct error *why)
+{
+	const struct mask mask = mask_of(valid, rgl->n_phi * rgl->n_theta * rgl->rgb[0].width * rgl->rgb[0].height);
+	struct entry_list list = {.from_grid = true,
+				  .gamut = gamut,
+				  .gray = rgl->gray,
+				  .n_channels = rgl->n_channels,
+				  .has_symmetry = true,
+				  .symmetry = is_isotropic(rgl)           ? SYMMETRY_ISOTROPIC
+					      : azimuth_repeats(rgl) >= 4 ? SYMMETRY_PLANE
+									  : SYMMETRY_ANISOTROPIC};
+	enum status status = list_entries(rgl, &mask, &list);
+
+	if (status == STATUS_OK)
+		status = entry_list_finish(&list, measurement, why);
+	entry_list_free(&list);
+	return status;
+}
+
+static enum status read_bytes(const unsigned char *bytes, size_t size, enum gamut gamut,
+			      struct measurement *measurement, struct error *why)
 {
 	struct rgl *rgl = calloc(1, sizeof *rgl);
 	struct tensor_file file;
@@ -449,7 +436,7 @@ static enum status read_bytes(const unsigned char *bytes, size_t size, struct me
 	if (status == STATUS_OK)
 		status = read_fields(&file, rgl, why);
 	if (status == STATUS_OK)
-		status = make_entries(rgl, tensor_file_find(&file, "valid"), measurement, why);
+		status = make_entries(rgl, tensor_file_find(&file, "valid"), gamut, measurement, why);
 	if (status != STATUS_OK) {
 		rgl_free(rgl);
 		return status;
@@ -460,7 +447,7 @@ static enum status read_bytes(const unsigned char *bytes, size_t size, struct me
 	return STATUS_OK;
 }
 
-enum status rgl_read(const char *path, struct measurement *measurement, struct error *error)
+enum status rgl_read(const char *path, enum gamut gamut, struct measurement *measurement, struct error *error)
 {
 	struct error why = {{0}};
 	unsigned char *bytes;
@@ -469,7 +456,7 @@ enum status rgl_read(const char *path, struct measurement *measurement, struct e
 	*measurement = (struct measurement){0};
 	enum status status = regular_file_read(path, "an RGL file", max_file_size, &bytes, &size, &why);
 	if (status == STATUS_OK)
-		status = read_bytes(bytes, size, measurement, &why);
+		status = read_bytes(bytes, size, gamut, measurement, &why);
 	free(bytes);
 	if (status == STATUS_OK)
 		return status;

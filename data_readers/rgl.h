@@ -8,11 +8,13 @@
 #define RGL_H
 
 #include "data_readers/measurement.h"
+#include "data_readers/quantity.h"
 
 /* rgl_read - one scattered entry per node of the file that lies above the horizon and was measured; its solid angle is that
- * of its cell. Spectra become RGB as spectrum.h has it. What is negative, out of gamut, counts as n_negative. The
- * measurement keeps an interpolant, measurement->rgl. Errors as merl_read(). */
-MUST_CHECK enum status rgl_read(const char *path, struct measurement *measurement, struct error *error);
+ * of its cell. Spectra become RGB as spectrum.h has it; a negative value is out of gamut, and `gamut` says what becomes of
+ * it. The measurement keeps an interpolant, measurement->rgl. Errors as measurement_read(). */
+MUST_CHECK enum status rgl_read(const char *path, enum gamut gamut, struct measurement *measurement,
+				struct error *error);
 
 /* rgl_f - the BRDF, 1/sr, between the nodes as the database's own evaluator has it; a channel that is out of gamut is
  * negative. Given: unit vectors. Returns: false, f untouched, where a direction is at or below the horizon. */

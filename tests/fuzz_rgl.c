@@ -27,7 +27,7 @@ int fuzz_rgl(const uint8_t *data, size_t size)
 	if (fd < 0 || write(fd, data, size) != (ssize_t)size)
 		abort();
 	snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
-	const enum status status = rgl_read(path, &measurement, &error);
+	const enum status status = rgl_read(path, GAMUT_MASK, &measurement, &error);
 	snprintf(message, sizeof message, "stdfit: %s\n", error.text);
 	PROMISE(status == STATUS_OK || (measurement.scattered == NULL && is_message(message)));
 	for (size_t n = 0; status == STATUS_OK && n < measurement.scattered->n; n++)
