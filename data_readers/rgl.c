@@ -48,9 +48,9 @@ static bool is_isotropic(const struct rgl *rgl)
 }
 
 /* How often the range of measured azimuths goes into the circle: 2 and 4 stand for a symmetry of the sample. */
-static int azimuth_repeats(const struct rgl *rgl)
+static double azimuth_repeats(const struct rgl *rgl)
 {
-	return (int)lround(2 * M_PI / (double)(rgl->phi_i[rgl->n_phi - 1] - rgl->phi_i[0]));
+	return round(2 * M_PI / ((double)rgl->phi_i[rgl->n_phi - 1] - (double)rgl->phi_i[0]));
 }
 
 /* theta and phi of a direction in the unit square, and back. */
@@ -80,7 +80,7 @@ static double polar_angle(struct vec3 w)
  * mirror images (4), or itself turned by 180 degrees (2). */
 static void fold(const struct rgl *rgl, struct vec3 *wi, struct vec3 *wo)
 {
-	const int repeats = is_isotropic(rgl) ? 1 : azimuth_repeats(rgl);
+	const double repeats = is_isotropic(rgl) ? 1 : azimuth_repeats(rgl);
 
 	if (repeats < 2)
 		return;
@@ -284,6 +284,11 @@ static enum status read_fields(const struct tensor_file *file, struct rgl *rgl, 
 		status = read_axis(file, "theta_i", 0, M_PI / 2 + slack, &rgl->theta_i, &rgl->n_theta, why);
 	if (status != STATUS_OK)
 		return status;
+	const double repeats = is_isotropic(rgl) ? 1 : azimuth_repeats(rgl);
+	if (repeats != 1 && repeats != 2 && repeats != 4)
+		return error_set(why, STATUS_FORMAT,
+				 "field 'phi_i': expected the whole circle, a half or a quarter, found %g to %g",
+				 (double)rgl->phi_i[0], (double)rgl->phi_i[rgl->n_phi - 1]);
 	if (!jacobian || jacobian->type != TENSOR_UINT8)
 		return expected(why, "jacobian", "a byte", jacobian);
 	rgl->divided = jacobian->data[0] != 0;

@@ -361,6 +361,18 @@ static void wrong_fields_are_refused_by_name(void **state)
 	}
 }
 
+static void azimuths_that_stand_for_no_circle_are_refused(void **state)
+{
+	(void)state;
+	const double last[] = {-pi + 1e-6, -pi + 2};
+	for (int n = 0; n < 2; n++) {
+		struct rgl_spec spec = {5, 3, 4, 3, -pi, last[n], 1.5, false, true, twisted};
+		struct rgl_bytes file = rgl_make(&spec);
+		refuse(&file, "field 'phi_i': expected the whole circle, a half or a quarter, found -3.14159 to");
+		free(file.bytes);
+	}
+}
+
 /* Deterministic damage: the reader comes back, and what it gives is sound. */
 static void damaged_files_never_give_unsound_entries(void **state)
 {
@@ -405,6 +417,7 @@ int main(void)
 		cmocka_unit_test(below_the_horizon_there_is_no_value),
 		cmocka_unit_test(a_file_cut_anywhere_is_refused),
 		cmocka_unit_test(wrong_fields_are_refused_by_name),
+		cmocka_unit_test(azimuths_that_stand_for_no_circle_are_refused),
 		cmocka_unit_test(damaged_files_never_give_unsound_entries),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
