@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/cli/files.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/messages.h"
 
@@ -28,9 +29,7 @@ static bool files_add(struct files *files, const char *path)
 
 static bool is_material(const char *name)
 {
-	static const char suffix[] = ".binary";
-	const size_t length = strlen(name), n = sizeof suffix - 1;
-	return name[0] != '.' && length > n && !strcmp(name + length - n, suffix);
+	return name[0] != '.' && measurement_extension(name);
 }
 
 /* A file or directory by what it is, not by its name. */
@@ -140,7 +139,7 @@ static bool walk_entry(struct walk *walk, const char *path, const char *name)
 		const int is_new = walk->recursive ? seen_add(&walk->seen, &info) : 0;
 		return is_new > 0 ? walk_directory(walk, path) : is_new == 0;
 	}
-	if (is_material(name))
+	if (is_material(name) && measurement_is_known(path))
 		return files_add(walk->files, path);
 	/* It may be a directory, unless it is a link that leads nowhere. */
 	if (!known && errno != ENOENT && errno != ELOOP) {
@@ -179,7 +178,7 @@ static int add_directory(struct files *files, const char *path, const struct sta
 	const bool stored = seen_add(&walk.seen, info) >= 0 && walk_directory(&walk, path);
 	free(walk.seen.entry);
 	if (stored && !walk.problems && files->n == before && !*cancel) {
-		cannot_read(path, "no *.binary in this directory");
+		cannot_read(path, "no measurement in this directory");
 		walk.problems++;
 	}
 	return stored ? walk.problems : -1;
@@ -303,16 +302,4 @@ bool files_same(const char *a, const char *b)
 	char in_a[PATH_MAX], in_b[PATH_MAX];
 	return !strcmp(split(a, in_a), split(b, in_b)) && find_id(in_a, &x, &regular) && find_id(in_b, &y, &regular) &&
 	       !id_order(&x, &y);
-}
-
-bool files_has(const struct files *files, const char *path)
-{
-	struct id file, other;
-	bool regular;
-	if (!find_id(path, &file, &regular) || !regular)
-		return false;
-	for (size_t i = 0; i < files->n; i++)
-		if (find_id(files->path[i], &other, &regular) && !id_order(&file, &other))
-			return true;
-	return false;
 }

@@ -70,6 +70,11 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "Draws normals m, visible or all, with their density. With --theta-i also the direction wo into\n"
 		 "which each reflects, its density, and its weight: the mean of the weights is the directional\n"
 		 "albedo of the lobe without its Fresnel term.\n"},
+	[COMMAND_CONVERT] =
+		{"convert", "IN OUT", "a measurement as CSV of samples or as a MERL file",
+		 "Writes a measurement of any format as OUT.csv, samples in linear sRGB or gray with the solid angle\n"
+		 "that each stands for, or as OUT.binary, a MERL file: interpolated, -1 where nothing was measured,\n"
+		 "with the mean of both orders of wi and wo unless --phi 360. One line tells what was lost.\n"},
 	[COMMAND_SYNTH] = {"synth", "OUT.binary", "write a MERL file of a model",
 			   "Writes the table that an ideal measurement of the model would give; -1 below the\n"
 			   "horizon.\n"},
@@ -106,11 +111,18 @@ static bool is_recorded(const struct options *options, const struct option_spec 
 		return true;
 	case RECORDED_WITHIN:
 		return !isnan(options->within);
+	case RECORDED_GIVEN:
+		return options->given[spec - option_specs];
 	case RECORDED_ALGORITHM:
 		return options->fit.algorithm;
 	default:
 		return false;
 	}
+}
+
+struct read_options options_reading(const struct options *options, int threads)
+{
+	return (struct read_options){.threads = threads, .quantity = options->quantity, .gamut = options->gamut};
 }
 
 char *options_text(const struct options *options)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit export - a model in the form of another program. */
 #include "data_readers/atomic_file.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/merl.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/outputs.h"
@@ -39,7 +40,7 @@ static enum status find_samples(const struct options *options, const struct sour
 	*found = measurement->value[0] ? path : NULL;
 	if (*found || !path || !export_wants_samples(options->format, &model->model))
 		return STATUS_OK;
-	const enum status status = merl_read(path, options->fit.threads, measurement, error);
+	const enum status status = measurement_read(path, &model->reading, measurement, error);
 	if (status != STATUS_OK)
 		return status == STATUS_NO_MEMORY ? status : STATUS_OK;
 	if (options->n_paths || result_is_input(model->input, measurement))

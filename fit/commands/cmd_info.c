@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* stdfit info - what is in a MERL file. */
-#include "data_readers/merl.h"
+/* stdfit info - what is in the file of a measurement. */
+#include "data_readers/measurement_read.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/options.h"
 #include "fit/cli/report.h"
@@ -24,6 +24,10 @@ enum info_column {
 	INFO_VALID_ABOVE,
 	INFO_RANGE, /* min, median, max of red, green, blue */
 	INFO_SUSPECTS = INFO_RANGE + 9,
+	INFO_FORMAT,
+	INFO_SYMMETRY,
+	INFO_CHANNELS,
+	INFO_LEFT_OUT,
 	INFO_COLUMNS
 };
 
@@ -49,6 +53,10 @@ static const struct csv_column columns[INFO_COLUMNS] = {
 	{"median_b", true},
 	{"max_b", true},
 	[INFO_SUSPECTS] = {"suspects", false},
+	[INFO_FORMAT] = {"format", false},
+	[INFO_SYMMETRY] = {"symmetry", false},
+	[INFO_CHANNELS] = {"channels", true},
+	[INFO_LEFT_OUT] = {"left_out", false},
 };
 
 enum { SUSPECTS_SIZE = 256 };
@@ -61,7 +69,8 @@ static void add_count(char *text, const char *what, size_t n)
 }
 
 /* What a sound measurement does not have. */
-static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *measurement, const struct census *census)
+static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *measurement, const struct census *census,
+			   enum gamut gamut)
 {
 	const bool zero = census->range[0].max <= 0 && census->range[1].max <= 0 && census->range[2].max <= 0;
 	snprintf(text, SUSPECTS_SIZE, "%s",
@@ -71,16 +80,32 @@ static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *m
 	add_count(text, "masked above the horizon", census->above - census->valid_above);
 	add_count(text, "valid below the horizon", census->valid_below);
 	add_count(text, "non-finite", measurement->n_nonfinite);
+	if (gamut == GAMUT_CLIP)
+		add_count(text, "out of gamut, set to 0", measurement->n_out_of_gamut);
+}
+
+/* Which entries of the file are not among those that count, and why. */
+static void write_left_out(char text[SUSPECTS_SIZE], const struct measurement *measurement, enum gamut gamut)
+{
+	text[0] = '\0';
+	add_count(text, "negative", measurement->n_negative);
+	add_count(text, "non-finite", measurement->n_nonfinite);
+	add_count(text, "not measured", measurement->n_missing);
+	add_count(text, "at or below the horizon", measurement->n_below_horizon);
+	if (gamut == GAMUT_MASK)
+		add_count(text, "out of gamut", measurement->n_out_of_gamut);
 }
 
 static enum status add_file(struct csv_table *table, const char *path, const struct measurement *measurement,
-			    const struct census *census)
+			    const struct census *census, enum gamut gamut)
 {
+	const struct scattered *scattered = measurement->scattered;
 	double number[INFO_COLUMNS] = {
 		[INFO_SIZE] = (double)measurement->file_size,
-		[INFO_N_THETA_H] = MERL_THETA_H,
-		[INFO_N_THETA_D] = MERL_THETA_D,
-		[INFO_N_PHI_D] = measurement->n_phi_d,
+		[INFO_N_THETA_H] = scattered ? (double)NAN : MERL_THETA_H,
+		[INFO_N_THETA_D] = scattered ? (double)NAN : MERL_THETA_D,
+		[INFO_N_PHI_D] = scattered ? (double)NAN : measurement->n_phi_d,
+		[INFO_CHANNELS] = scattered ? measurement->n_channels : MERL_CHANNELS,
 		[INFO_VALID] = (double)census->valid,
 		[INFO_NEGATIVE] = (double)measurement->n_negative,
 		[INFO_NONFINITE] = (double)measurement->n_nonfinite,
@@ -92,15 +117,20 @@ static enum status add_file(struct csv_table *table, const char *path, const str
 		number[INFO_RANGE + 3 * c + 1] = census->range[c].median;
 		number[INFO_RANGE + 3 * c + 2] = census->range[c].max;
 	}
-	char text[INFO_COLUMNS][CSV_NUMBER_SIZE], hash[CSV_NUMBER_SIZE], suspects[SUSPECTS_SIZE];
+	char text[INFO_COLUMNS][CSV_NUMBER_SIZE], hash[CSV_NUMBER_SIZE], suspects[SUSPECTS_SIZE],
+		left_out[SUSPECTS_SIZE];
 	const char *cell[INFO_COLUMNS];
 	for (int c = 0; c < INFO_COLUMNS; c++)
 		cell[c] = csv_number(text[c], number[c]);
 	snprintf(hash, sizeof hash, "%016" PRIx64, measurement->file_hash);
-	write_suspects(suspects, measurement, census);
+	write_suspects(suspects, measurement, census, gamut);
 	cell[INFO_PATH] = path;
 	cell[INFO_HASH] = hash;
 	cell[INFO_SUSPECTS] = suspects;
+	write_left_out(left_out, measurement, gamut);
+	cell[INFO_FORMAT] = measurement->format;
+	cell[INFO_SYMMETRY] = symmetry_name(scattered ? scattered->symmetry : SYMMETRY_ISOTROPIC);
+	cell[INFO_LEFT_OUT] = left_out;
 	return csv_table_add(table, cell);
 }
 
@@ -109,12 +139,13 @@ static enum status inspect(struct csv_table *table, const struct options *option
 {
 	struct measurement measurement;
 	struct census census;
-	enum status status = merl_read(path, options->fit.threads, &measurement, error);
+	const struct read_options reading = options_reading(options, options->fit.threads);
+	enum status status = measurement_read(path, &reading, &measurement, error);
 	if (status != STATUS_OK)
 		return status;
 	status = census_take(&measurement, options->fit.criterion.bins, &census);
 	if (status == STATUS_OK)
-		status = add_file(table, path, &measurement, &census);
+		status = add_file(table, path, &measurement, &census, options->gamut);
 	if (status != STATUS_OK)
 		error_set(error, status, "out of memory");
 	measurement_free(&measurement);

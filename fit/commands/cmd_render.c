@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit render - spheres of measured materials beside spheres of their models, and how much their pictures differ. */
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
+#include "data_readers/resample.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/files.h"
 #include "fit/cli/lighting.h"
@@ -121,12 +122,15 @@ static enum status show_source(struct render *render, const char *path, struct m
 	struct shown_models shown;
 	enum status status = shown_models_choose(source, path, render->from_table, &shown, error);
 	if (status == STATUS_OK && !source->measurement.value[0])
-		status = merl_read(path, render->options->fit.threads, &source->measurement, error);
+		status = measurement_read(path, &shown.model[0]->reading, &source->measurement, error);
 	for (int i = 0; i < shown.n && status == STATUS_OK && render->from_table; i++)
 		status = result_check_input(shown.model[i]->input, &source->measurement, path, error);
 	if (status != STATUS_OK)
 		return status;
-	status = show_models(render, path, &source->measurement, &shown);
+	status = measurement_fill(&source->measurement, shown.model[0]->fit.criterion.bins,
+				  render->options->fit.threads);
+	if (status == STATUS_OK)
+		status = show_models(render, path, &source->measurement, &shown);
 	if (status == STATUS_OK)
 		return STATUS_OK;
 	char name[TEXT_QUOTE_SIZE];

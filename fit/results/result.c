@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/results/result.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/results/energy_conservation.h"
 #include "fit/search/free_form.h"
@@ -73,16 +74,42 @@ enum status result_check_input(const char *input, const struct measurement *meas
 	return error_set(error, STATUS_FORMAT, "cannot show '%s': it is not the file any more that was fitted", name);
 }
 
+enum { RECORDED_SIZE = 32 };
+
+/* The value behind NAME= in the text of the options; false: it is not there, or does not fit. */
+static bool recorded(const char *options, const char *name, char value[RECORDED_SIZE])
+{
+	const size_t length = strlen(name);
+	for (const char *at = options; *at; at += strspn(at, " ")) {
+		const size_t n = strcspn(at, " ");
+		if (n > length && !strncmp(at, name, length) && n - length < RECORDED_SIZE) {
+			snprintf(value, RECORDED_SIZE, "%.*s", (int)(n - length), at + length);
+			return true;
+		}
+		at += n;
+	}
+	return false;
+}
+
+struct read_options result_reading(char *const *row, int threads)
+{
+	struct read_options reading = {.threads = threads};
+	char value[RECORDED_SIZE];
+	/* What is no name that this version knows leaves the default. */
+	if (recorded(row[RESULT_OPTIONS], "quantity=", value) && quantity_find(value, &reading.quantity) != STATUS_OK)
+		reading.quantity = QUANTITY_FROM_FILE;
+	if (recorded(row[RESULT_OPTIONS], "gamut=", value) && gamut_find(value, &reading.gamut) != STATUS_OK)
+		reading.gamut = GAMUT_CLIP;
+	return reading;
+}
+
 char *result_material(const char *path)
 {
-	static const char suffix[] = ".binary";
 	const char *slash = strrchr(path, '/');
 	char *name = strdup(slash ? slash + 1 : path);
 	if (!name)
 		return NULL;
-	const size_t length = strlen(name), cut = sizeof suffix - 1;
-	if (length > cut && !strcmp(name + length - cut, suffix))
-		name[length - cut] = '\0';
+	name[strlen(name) - measurement_extension(name)] = '\0';
 	return name;
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/sources/batch.h"
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/progress.h"
@@ -95,7 +95,10 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 	const struct result_source source = batch_source(run->batch, file);
 	const struct fit_context *context;
 	struct fit_result result[FIT_NDFS_MAX];
-	enum status status = get_context(run, measurement->n_phi_d, &context);
+	enum status status = measurement_require_table(measurement, "the fit", &file->error);
+	if (status != STATUS_OK)
+		return status;
+	status = get_context(run, measurement->n_phi_d, &context);
 	if (status != STATUS_OK)
 		return error_set(&file->error, status, "%s", status_str(status));
 	if (!isnan(options->within))
@@ -122,7 +125,8 @@ static enum status process(struct run *run, struct batch_file *file)
 		fit.trace = trace_note;
 		fit.trace_data = &file->trace;
 	}
-	enum status status = merl_read(file->path, fit.threads, &measurement, &file->error);
+	const struct read_options reading = options_reading(run->batch->options, fit.threads);
+	enum status status = measurement_read(file->path, &reading, &measurement, &file->error);
 	file->unread = status == STATUS_IO || status == STATUS_NO_MEMORY;
 	if (status == STATUS_OK) {
 		result_input(file->input, &measurement);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/sources/materials.h"
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
+#include "data_readers/resample.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/files.h"
 #include "fit/cli/messages.h"
@@ -260,7 +261,8 @@ static enum status read_samples(const struct material *material, int threads, st
 				struct error *error)
 {
 	char *const *row = material->row[0];
-	enum status status = merl_read(row[RESULT_PATH], threads, measurement, error);
+	const struct read_options reading = result_reading(row, threads);
+	enum status status = measurement_read(row[RESULT_PATH], &reading, measurement, error);
 	if (status != STATUS_OK)
 		return status;
 	status = result_check_input(row[RESULT_INPUT], measurement, row[RESULT_PATH], error);
@@ -275,6 +277,9 @@ enum status material_read(const struct material *material, int threads, struct m
 	enum status status = read_models(material, threads, data, error);
 	if (status == STATUS_OK)
 		status = read_samples(material, threads, &data->measurement, error);
+	if (status == STATUS_OK &&
+	    measurement_fill(&data->measurement, data->fit[0].options.criterion.bins, threads) != STATUS_OK)
+		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
 	if (status != STATUS_OK)
 		material_data_free(data);
 	return status;
