@@ -165,10 +165,8 @@ static enum status judge(struct bench *b, struct curve *curve)
 			const struct shape shape = {p->sigma, p->gamma, p->ior, p->k};
 			if (*b->options->cancel)
 				status = STATUS_INTERRUPTED;
-			else if (p->ndf == ready && is_thinned(p)) {
-				objective_jump(&objective, &shape);
+			else if (p->ndf == ready && is_thinned(p))
 				p->error = objective_eval(&objective, &shape, 1e-6, false, &linear);
-			}
 		}
 		objective_free(&objective);
 	}
