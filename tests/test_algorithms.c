@@ -247,7 +247,7 @@ static void each_stops_when_cancelled(void **state)
 static void the_error_of_a_point(void **state)
 {
 	const struct fit_options o = options_for(NULL, NULL);
-	const struct shape shape = {0.2, 1.8, 1.5, 0}, nonsense = {-1, 1.8, 1.5, 0};
+	const struct shape shape = {0.2, 1.8, 1.5, 0, 0, 0}, nonsense = {-1, 1.8, 1.5, 0, 0, 0};
 	const double none[3] = {0, 0, 0};
 	struct objective objective;
 	struct linear linear;
@@ -264,9 +264,10 @@ static void the_error_of_a_point(void **state)
 /* From lobes that are high to ones that are low and back: what is left of the solve before must not end the next one. */
 static void a_jump_to_another_lobe_ends_at_its_minimum(void **state)
 {
-	static const struct shape shapes[] = {{2e-3, 1.9, 90, 0}, {0.3, 2.5, 1.2, 0},  {0.087, 9.5, 3.2, 0},
-					      {0.01, 1.6, 30, 0}, {0.16, 2.2, 3.1, 0}, {1.5, 1.55, 1.05, 0},
-					      {4e-3, 50, 60, 0},  {0.52, 1.6, 6.5, 0}, {0.12, 1.9, 1.6, 0}};
+	static const struct shape shapes[] = {
+		{2e-3, 1.9, 90, 0, 0, 0}, {0.3, 2.5, 1.2, 0, 0, 0},  {0.087, 9.5, 3.2, 0, 0, 0},
+		{0.01, 1.6, 30, 0, 0, 0}, {0.16, 2.2, 3.1, 0, 0, 0}, {1.5, 1.55, 1.05, 0, 0, 0},
+		{4e-3, 50, 60, 0, 0, 0},  {0.52, 1.6, 6.5, 0, 0, 0}, {0.12, 1.9, 1.6, 0, 0, 0}};
 	const struct fit_options o = options_for(NULL, NULL);
 	struct objective jumping, fresh;
 	struct linear found, wanted;

@@ -162,7 +162,7 @@ static enum status judge(struct bench *b, struct curve *curve)
 		status = objective_init(&objective, &b->full, &b->options->fit, ready, 1, MASKING_COARSE);
 		for (size_t n = 0; n < curve->trace.n && status == STATUS_OK; n++) {
 			struct fit_trace *p = &curve->trace.point[n];
-			const struct shape shape = {p->sigma, p->gamma, p->ior, p->k};
+			const struct shape shape = {.sigma = p->sigma, .gamma = p->gamma, .ior = p->ior, .k = p->k};
 			if (*b->options->cancel)
 				status = STATUS_INTERRUPTED;
 			else if (p->ndf == ready && is_thinned(p)) {
