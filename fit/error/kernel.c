@@ -82,7 +82,7 @@ static void lobe(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *r
 
 static inline float curve_at(const struct kernel_curve *curve, const float *restrict value, float x)
 {
-	const float above = x > curve->first ? x : curve->first;
+	const float y = x + curve->offset, above = y > curve->first ? y : curve->first;
 	const union {
 		float f;
 		int32_t i;

@@ -35,11 +35,11 @@ struct kernel_samples {
 	const uint16_t *row;
 };
 
-/* A function of one number x, tabulated over octaves of x: entry (bits of x - first_bits) >> shift of `value` and the one
- * above, between which one interpolates linearly. x below `first` counts as that, x above `last` as that. */
+/* A function of one number x, tabulated over octaves of y = x + offset: entry (bits of y - first_bits) >> shift of `value` and the
+ * one above, between which one interpolates linearly. y below `first` counts as that, y above `last` as that. */
 struct kernel_curve {
 	const float *value;
-	float first, last;
+	float offset, first, last;
 	int32_t first_bits;
 	int shift;
 };

@@ -5,59 +5,65 @@
 #include <stdlib.h>
 
 enum {
-	OCTAVE_COUNT_MAX = 160, /* more than any range of a double's x that is within a float's */
-	MARGIN = 3,             /* nodes beyond the range on either side, for the six-point interpolation */
+	OCTAVES_MAX = 160, /* more than any range of a double's y that is within a float's */
+	MARGIN = 3,        /* nodes beyond the range on either side, for the six-point interpolation */
+	NODES = 6,
 	ENTRY_BITS_MAX = 11
 };
 
-/* Where an entry of an octave stands among its nodes: the third of six, and their weights. */
-struct octave_between {
-	int node;
-	double weight[6];
-};
-
-enum status octave_table_init(struct octave_table *table, int node_bits, int entry_bits)
+/* Where an entry of an octave stands among its nodes. */
+static double node_of(const struct octave_table *t, int n)
 {
-	*table = (struct octave_table){.node_bits = node_bits, .entry_bits = entry_bits};
-	const int per_octave = 1 << table->entry_bits, nodes = 1 << table->node_bits;
+	return log2(1 + (double)n / (1 << t->entry_bits)) * (1 << t->node_bits);
+}
 
-	table->node = malloc((size_t)(OCTAVE_COUNT_MAX * nodes + 1 + 2 * MARGIN) * sizeof *table->node);
-	table->between = malloc((size_t)per_octave * sizeof *table->between);
-	table->entry = malloc((size_t)(OCTAVE_COUNT_MAX * per_octave + 2) * sizeof *table->entry);
-	if (!table->node || !table->between || !table->entry) {
-		octave_table_free(table);
+enum status octave_table_init(struct octave_table *t, int node_bits, int entry_bits)
+{
+	*t = (struct octave_table){.node_bits = node_bits, .entry_bits = entry_bits};
+	const size_t per_octave = (size_t)1 << entry_bits, nodes = (size_t)1 << node_bits;
+
+	t->node = malloc((OCTAVES_MAX * nodes + 1 + 2 * MARGIN) * sizeof *t->node);
+	t->weight = malloc(NODES * per_octave * sizeof *t->weight);
+	t->entry = malloc((OCTAVES_MAX * per_octave + 2) * sizeof *t->entry);
+	if (!t->node || !t->weight || !t->entry) {
+		octave_table_free(t);
 		return STATUS_NO_MEMORY;
 	}
-	for (int n = 0; n < per_octave; n++) {
-		const double at = log2(1 + (double)n / per_octave) * nodes;
+	for (size_t n = 0; n < per_octave; n++) {
+		const double at = node_of(t, (int)n);
+		double weight[NODES];
 
-		table->between[n].node = (int)at;
-		six_weights(at - floor(at), table->between[n].weight);
+		six_weights(at - floor(at), weight);
+		for (size_t k = 0; k < NODES; k++)
+			t->weight[k * per_octave + n] = weight[k];
 	}
 	return STATUS_OK;
 }
 
-void octave_table_free(struct octave_table *table)
+void octave_table_free(struct octave_table *t)
 {
-	free(table->node);
-	free(table->between);
-	free(table->entry);
-	*table = (struct octave_table){0};
+	free(t->node);
+	free(t->weight);
+	free(t->entry);
+	*t = (struct octave_table){0};
 }
 
-/* 2^x for x <= 1000, to 1e-11, in a form that vectorises; 0 below 2^-126, where floats end. */
+/* 2^x for x up to 127, to 1e-9, in a form that vectorises; 0 below 2^-126, where floats end. */
 static inline double power_of_two(double x)
 {
 	const double least = -126, bounded = x > least ? x : least;
-	const double whole = (double)(int32_t)(bounded - 0.5), t = (bounded - whole) * M_LN2;
-	union {
+	const int32_t whole = (int32_t)(bounded + 1024.5) - 1024;
+	const double t = (bounded - whole) * M_LN2;
+	const union {
 		int64_t i;
 		double d;
-	} scale = {((int64_t)(int32_t)whole + 1023) * ((int64_t)1 << 52)};
-	double sum = 1;
+	} scale = {((int64_t)whole + 1023) * ((int64_t)1 << 52)};
+	const double sum =
+		1 + t * (1 + t * (1.0 / 2 +
+				  t * (1.0 / 6 +
+				       t * (1.0 / 24 + t * (1.0 / 120 +
+							    t * (1.0 / 720 + t * (1.0 / 5040 + t * (1.0 / 40320))))))));
 
-	for (int n = 11; n > 0; n--)
-		sum = 1 + sum * t / n;
 	return x > least ? sum * scale.d : 0;
 }
 
@@ -67,96 +73,111 @@ static double bounded_log(double value)
 	return value > 1e-300 ? log2(value) : -1000;
 }
 
-static double node_x(const struct octave_table *c, int n)
-{
-	return exp2(c->low + (double)(n - MARGIN) / (1 << c->node_bits));
-}
-
 /* Below this log2 an entry is 0. */
 #define NOTHING (-150)
 
-static void fill_nodes(struct octave_table *c, enum octave_kind kind, double (*f)(const void *data, double x),
+/* The polynomial through six nodes in a row, at the node that stands `step` before them. */
+static double extrapolate(const double *node, int step)
+{
+	return 6 * node[step] - 15 * node[2 * step] + 20 * node[3 * step] - 15 * node[4 * step] + 6 * node[5 * step] -
+	       node[6 * step];
+}
+
+static void fill_nodes(struct octave_table *t, enum octave_kind kind, double (*f)(const void *data, double x),
 		       const void *data)
 {
-	int end = (c->octaves << c->node_bits) + MARGIN + 1;
+	const int begin = kind == OCTAVES_LOG ? MARGIN : 0, after = kind == OCTAVES_ENDED ? 0 : MARGIN;
+	int end = (t->octaves << t->node_bits) + MARGIN + 1;
 
-	for (int n = 0; n < (kind == OCTAVES_PLAIN ? end : end + MARGIN); n++) {
-		const double value = f(data, node_x(c, n));
+	for (int n = begin; n < end + after; n++) {
+		const double y = exp2(t->low + (double)(n - MARGIN) / (1 << t->node_bits));
+		const double value = f(data, fmax(y - t->offset, 0));
 
-		c->node[n] = kind == OCTAVES_LOG ? bounded_log(value) : value;
-		if (kind == OCTAVES_LOG && n >= MARGIN && c->node[n] < NOTHING) {
-			const int octaves = ((n - MARGIN) >> c->node_bits) + 1;
+		t->node[n] = kind == OCTAVES_LOG ? bounded_log(value) : value;
+		if (kind == OCTAVES_LOG && t->node[n] < NOTHING) {
+			const int octaves = ((n - MARGIN) >> t->node_bits) + 1;
 
-			c->octaves = octaves < c->octaves ? octaves : c->octaves;
-			end = (c->octaves << c->node_bits) + MARGIN + 1;
+			t->octaves = octaves < t->octaves ? octaves : t->octaves;
+			end = (t->octaves << t->node_bits) + MARGIN + 1;
 		}
 	}
-	/* Beyond the end the function may have a kink: the polynomial through the last six nodes goes on. */
-	for (int n = end; kind == OCTAVES_PLAIN && n < end + MARGIN; n++) {
-		const double *b = c->node + n;
+	for (int n = begin - 1; n >= 0; n--)
+		t->node[n] = extrapolate(t->node + n, 1);
+	for (int n = end; n < end + MARGIN - after; n++)
+		t->node[n] = extrapolate(t->node + n, -1);
+}
 
-		c->node[n] = 6 * b[-1] - 15 * b[-2] + 20 * b[-3] - 15 * b[-4] + 6 * b[-5] - b[-6];
+/* Those from one node to the next, entries from .. to - 1 of an octave. */
+static void fill_entries(const struct octave_table *t, enum octave_kind kind, const double *node, int from, int to,
+			 float *entry)
+{
+	const size_t per_octave = (size_t)1 << t->entry_bits;
+	const double *a = t->weight, *b = a + per_octave, *c = b + per_octave, *d = c + per_octave, *e = d + per_octave,
+		     *f = e + per_octave;
+	const double va = node[0], vb = node[1], vc = node[2], vd = node[3], ve = node[4], vf = node[5];
+
+	if (kind == OCTAVES_LOG)
+		for (int n = from; n < to; n++)
+			entry[n] = (float)power_of_two(a[n] * va + b[n] * vb + c[n] * vc + d[n] * vd + e[n] * ve +
+						       f[n] * vf);
+	else
+		for (int n = from; n < to; n++)
+			entry[n] = (float)(a[n] * va + b[n] * vb + c[n] * vc + d[n] * vd + e[n] * ve + f[n] * vf);
+}
+
+static void fill_all(const struct octave_table *t, enum octave_kind kind)
+{
+	const int nodes = 1 << t->node_bits, per_octave = 1 << t->entry_bits;
+	int from = 0;
+
+	for (int k = 0; k < nodes; k++) {
+		int to = from;
+
+		while (to < per_octave && node_of(t, to) < k + 1)
+			to++;
+		for (int octave = 0; octave < t->octaves; octave++)
+			fill_entries(t, kind, t->node + octave * nodes + k + MARGIN - 2, from, to,
+				     t->entry + octave * per_octave);
+		from = to;
 	}
 }
 
-static inline double interpolate(const double *node, const struct octave_between *between)
-{
-	const double *v = node + between->node, *w = between->weight;
-
-	return w[0] * v[0] + w[1] * v[1] + w[2] * v[2] + w[3] * v[3] + w[4] * v[4] + w[5] * v[5];
-}
-
-static void fill_octave(const struct octave_table *c, enum octave_kind kind, int octave)
-{
-	const int per_octave = 1 << c->entry_bits;
-	const double *node = c->node + (octave << c->node_bits) + MARGIN - 2;
-	float *entry = c->entry + octave * per_octave;
-	double value[1 << ENTRY_BITS_MAX];
-
-	for (int n = 0; n < per_octave; n++)
-		value[n] = interpolate(node, &c->between[n]);
-	if (kind == OCTAVES_LOG)
-		for (int n = 0; n < per_octave; n++)
-			value[n] = power_of_two(value[n]);
-	for (int n = 0; n < per_octave; n++)
-		entry[n] = (float)value[n];
-}
-
-void octave_table_fill(struct octave_table *c, enum octave_kind kind, double x_min, double x_max, double at_zero,
+void octave_table_fill(struct octave_table *t, enum octave_kind kind, double offset, double y_min, double y_max,
 		       double (*f)(const void *data, double x), const void *data)
 {
-	const int per_octave = 1 << c->entry_bits;
-	/* An octave more below: its first entry is the one that stands for 0. */
-	const int low = (int)floor(log2(x_min)) - (kind == OCTAVES_PLAIN ? 0 : 1), high = (int)ceil(log2(x_max));
+	const int per_octave = 1 << t->entry_bits, high = (int)ceil(log2(y_max));
 
-	c->low = low;
-	c->octaves = high > low ? high - low : 1;
-	if (c->octaves > OCTAVE_COUNT_MAX)
-		c->octaves = OCTAVE_COUNT_MAX;
-	if (kind != OCTAVES_EXACT)
-		fill_nodes(c, kind, f, data);
-	const int last = c->octaves * per_octave;
-
+	t->offset = offset;
+	t->low = (int)floor(log2(y_min));
+	t->octaves = high > t->low ? high - t->low : 1;
+	if (t->octaves > OCTAVES_MAX)
+		t->octaves = OCTAVES_MAX;
 	if (kind == OCTAVES_EXACT) {
-		for (int n = 0; n <= last; n++)
-			c->entry[n] =
-				(float)f(data, ldexp(1 + (double)(n % per_octave) / per_octave, low + n / per_octave));
+		for (int n = 0; n < t->octaves * per_octave; n++) {
+			const double y = ldexp(1 + (double)(n % per_octave) / per_octave, t->low + n / per_octave);
+
+			t->entry[n] = (float)f(data, fmax(y - offset, 0));
+		}
 	} else {
-		for (int octave = 0; octave < c->octaves; octave++)
-			fill_octave(c, kind, octave);
-		c->entry[last] = (float)f(data, exp2(low + c->octaves));
+		fill_nodes(t, kind, f, data);
+		fill_all(t, kind);
 	}
-	c->entry[last + 1] = c->entry[last];
-	if (kind != OCTAVES_PLAIN)
-		c->entry[0] = (float)at_zero;
+	const int last = t->octaves * per_octave;
+
+	t->entry[last] = t->entry[last + 1] = (float)f(data, exp2(t->low + t->octaves) - offset);
 }
 
-struct kernel_curve octave_table_kernel(const struct octave_table *c)
+struct kernel_curve octave_table_kernel(const struct octave_table *t)
 {
-	union {
+	const union {
 		float f;
 		int32_t i;
-	} first = {ldexpf(1, c->low)};
+	} first = {ldexpf(1, t->low)};
 
-	return (struct kernel_curve){c->entry, first.f, ldexpf(1, c->low + c->octaves), first.i, 23 - c->entry_bits};
+	return (struct kernel_curve){.value = t->entry,
+				     .offset = (float)t->offset,
+				     .first = first.f,
+				     .last = ldexpf(1, t->low + t->octaves),
+				     .first_bits = first.i,
+				     .shift = 23 - t->entry_bits};
 }

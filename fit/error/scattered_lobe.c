@@ -66,10 +66,11 @@ static struct kernel_form form_of(const struct ndf *ndf, double a, double b)
 	return (struct kernel_form){(float)(a * c), (float)(a * s), (float)(-b * s), (float)(b * c)};
 }
 
-/* Below it, P22 in units of the roughness is that at the normal, to three times as much. */
-static double flat_below(enum masking_density density)
+/* P22 is hardly other than at the normal below this squared slope: of most a share of their own roughness, of a table 1/90 of a
+ * degree, where its nodes begin. A power of two. */
+static double flat_below(const struct ndf *ndf)
 {
-	return density == MASKING_FINE ? 0x1p-27 : 0x1p-20;
+	return ndf_is_tabulated(ndf->class) ? 0x1p-27 : exp2(floor(log2(ndf->sigma_x * ndf->sigma_x)) - 3);
 }
 
 /* tan theta squared of a direction that counts as the normal itself, as in a table. */
@@ -87,10 +88,14 @@ static void fill(struct scattered_lobe *lobe, const struct ndf *ndf, bool with_m
 {
 	const struct scattered_tables *f = &lobe->filled;
 	const enum octave_kind kind = ndf_is_tabulated(ndf->class) ? OCTAVES_EXACT : OCTAVES_LOG;
+	const double flat = flat_below(ndf);
 
-	octave_table_fill(&lobe->P22, kind, f->h_min, f->h_max, ndf_D(ndf, (struct vec3){0, 0, 1}), P22_at, ndf);
-	if (with_masking)
-		octave_table_fill(&lobe->G1, OCTAVES_LOG, f->w_min, f->w_max, 1, G1_at, ndf);
+	octave_table_fill(&lobe->P22, kind, flat, flat + f->h_min, flat + f->h_max, P22_at, ndf);
+	if (with_masking) {
+		octave_table_fill(&lobe->G1, OCTAVES_PLAIN, 0, f->w_min, f->w_max, G1_at, ndf);
+		if (f->to_normal)
+			lobe->G1.entry[0] = 1;
+	}
 }
 
 void scattered_lobe_ndf(struct scattered_lobe *lobe, const struct sample_range *range, const struct ndf *ndf,
@@ -101,20 +106,16 @@ void scattered_lobe_ndf(struct scattered_lobe *lobe, const struct sample_range *
 	const double sigma_x = shared ? ndf->sigma_x / ndf->stretch : 1,
 		     sigma_y = shared ? ndf->sigma_y / ndf->stretch : 1;
 	const double wide = fmax(sigma_x, sigma_y), narrow = fmin(sigma_x, sigma_y);
-	/* The widths of the others' peaks are those of sigma too, but for a table's, which has nodes in 1/90 of a degree. */
-	const double flat =
-		flat_below(lobe->density) * (shared                         ? 1
-					     : ndf_is_tabulated(ndf->class) ? 1e-7
-									    : fmin(1, ndf->sigma_x * ndf->sigma_x));
 	struct scattered_tables want = {
 		.class = unit.class,
 		.gamma = unit.gamma,
 		.form = unit.lambda_form,
-		.h_min = fmax(range->h_min / (wide * wide), flat),
+		.to_normal = range->w_min < NORMAL_BELOW,
+		.h_min = range->h_min / (wide * wide),
+		.h_max = range->h_max / (narrow * narrow),
 		.w_min = fmax(range->w_min, NORMAL_BELOW) * narrow * narrow,
 	};
 
-	want.h_max = fmax(range->h_max / (narrow * narrow), want.h_min);
 	want.w_max = fmax(range->w_max * wide * wide, want.w_min);
 	if (!shared || !is_filled(&lobe->filled, &want)) {
 		lobe->filled = want;
@@ -144,6 +145,6 @@ void scattered_lobe_fresnel(struct scattered_lobe *lobe, const struct sample_ran
 {
 	const struct fresnel_term term = {fresnel, n, k};
 
-	octave_table_fill(&lobe->F, OCTAVES_PLAIN, range->cos_d_min, 1, 0, F_at, &term);
+	octave_table_fill(&lobe->F, OCTAVES_ENDED, 0, range->cos_d_min, 1, F_at, &term);
 	lobe->shape.F = octave_table_kernel(&lobe->F);
 }

@@ -19,7 +19,8 @@ struct scattered_lobe {
 		const struct ndf_class *class;
 		double gamma;
 		enum lambda_form form;
-		double h_min, h_max, w_min, w_max; /* their ranges */
+		double h_min, h_max, w_min, w_max; /* their ranges, */
+		bool to_normal;                    /* the last of which goes on to wi or wo along the normal */
 	} filled;
 	struct kernel_shape shape;
 };
