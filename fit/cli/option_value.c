@@ -293,8 +293,8 @@ static enum status parse_shard(const struct option_spec *spec, const char *text,
 	struct shard found = {0};
 	const size_t length = strcspn(text, "/");
 	snprintf(number, sizeof number, "%.*s", (int)(length % sizeof number), text);
-	if (length >= sizeof number || !text[length] || parse_int(spec, number, &found.i, NULL) ||
-	    parse_int(spec, text + length + 1, &found.n, NULL) || found.i > found.n)
+	if (length >= sizeof number || !text[length] || parse_int(spec, number, &found.i, NULL) != STATUS_OK ||
+	    parse_int(spec, text + length + 1, &found.n, NULL) != STATUS_OK || found.i > found.n)
 		return error_set(error, STATUS_DOMAIN, "expected I/N, share I of N, as 1/4 to 4/4; N at most %g",
 				 spec->max);
 	*shard = found;
@@ -325,7 +325,7 @@ static enum status parse_rgb(const struct option_spec *spec, const char *text, d
 	int n = 0;
 	for (const char *rest = text; rest; n++) {
 		rest = next_item(rest, item, sizeof item);
-		if (n == 3 || parse_number(spec, item, &rgb[n], NULL))
+		if (n == 3 || parse_number(spec, item, &rgb[n], NULL) != STATUS_OK)
 			return error_set(error, STATUS_DOMAIN, "expected R,G,B or one number, each from %g to %g",
 					 spec->min, spec->max);
 	}
@@ -374,7 +374,7 @@ static enum status parse_algorithms(const char *text, struct options *options, s
 	for (const char *rest = text; rest; n++) {
 		const struct algorithm *algorithm;
 		rest = next_item(rest, name, sizeof name);
-		if (algorithm_find(name, &algorithm))
+		if (algorithm_find(name, &algorithm) != STATUS_OK)
 			return expected_choice(KIND_ALGORITHMS, error);
 		for (int i = 0; i < n; i++)
 			if (options->algorithm[i] == algorithm)
@@ -417,7 +417,8 @@ enum status option_parse(struct options *options, const struct option_spec *spec
 	case KIND_ALGORITHMS:
 		return parse_algorithms(text, options, error);
 	default:
-		return choice_find(spec->kind, text, value) ? expected_choice(spec->kind, error) : STATUS_OK;
+		return choice_find(spec->kind, text, value) != STATUS_OK ? expected_choice(spec->kind, error)
+									 : STATUS_OK;
 	}
 }
 

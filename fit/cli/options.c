@@ -252,7 +252,7 @@ static int take_option(struct options *options, int i, const char *text)
 {
 	struct error error;
 	options->given[i] = true;
-	if (!option_parse(options, &option_specs[i], text, &error))
+	if (option_parse(options, &option_specs[i], text, &error) == STATUS_OK)
 		return -1;
 	char shown[TEXT_QUOTE_SIZE];
 	text_quote(text, shown, sizeof shown);
@@ -443,7 +443,7 @@ int options_model(const struct options *options, struct cook_torrance *model)
 	memcpy(model->ks, options->ks, sizeof model->ks);
 	const double sigma = isnan(fit->sigma) ? 1 : fit->sigma, gamma = isnan(fit->gamma) ? 2 : fit->gamma;
 	const struct shape shape = {.sigma = sigma, .gamma = gamma};
-	if (shape_ndf(&shape, fit->ndf[0], fit->lambda, &model->ndf))
+	if (shape_ndf(&shape, fit->ndf[0], fit->lambda, &model->ndf) != STATUS_OK)
 		return options_usage(options->command, "--ndf %s does not allow these parameters",
 				     ndf_name(fit->ndf[0]));
 	return -1;

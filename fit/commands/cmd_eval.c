@@ -63,7 +63,7 @@ static enum status evaluate(struct evaluation *e, const struct source_model *sou
 	for (int c = EVAL_METRICS; c < EVAL_ENERGY; c++)
 		cell[c] = csv_number(text[c], number[c]);
 	cell[EVAL_ENERGY] = energy_conservation_name(&energy);
-	if (csv_table_add(&e->output, cell))
+	if (csv_table_add(&e->output, cell) != STATUS_OK)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	return STATUS_OK;
 }

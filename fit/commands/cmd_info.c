@@ -5,12 +5,9 @@
 #include "fit/cli/options.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
-#include "fit/error/entries.h"
-#include "fit/error/sample_set.h"
+#include "fit/error/census.h"
 
-#include <gsl/gsl_statistics_float.h>
 #include <inttypes.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum info_column {
@@ -53,72 +50,6 @@ static const struct csv_column columns[INFO_COLUMNS] = {
 	{"max_b", true},
 	[INFO_SUSPECTS] = {"suspects", false},
 };
-
-struct range {
-	double min, median, max;
-};
-
-/* A cosine nearer to 0 is that of an entry on the horizon, to rounding; a measurement there is nothing strange. */
-#define HORIZON 1e-9
-
-/* What is counted over the entries. Ranges are of valid entries above the horizon; NaN when there is none. */
-struct census {
-	size_t valid, above, valid_above, valid_below;
-	struct range range[MERL_CHANNELS];
-};
-
-/* Counts, and picks out the valid entries above the horizon into value[channel]. */
-static void count_entries(const struct measurement *measurement, enum bins bins, float *const value[],
-			  struct census *census)
-{
-	const struct entries entries = entries_make(bins, measurement->n_phi_d);
-	size_t at = 0;
-	for (int i = 0; i < MERL_THETA_H; i++)
-		for (int j = 0; j < MERL_THETA_D; j++)
-			for (int k = 0; k < measurement->n_phi_d; k++, at++) {
-				struct vec3 wi, wo;
-				entries_dirs(&entries, i, j, k, &wi, &wo);
-				const bool above = entry_in_range(wi, wo, 0), valid = !isnan(measurement->value[0][at]);
-				census->above += above;
-				census->valid += valid;
-				census->valid_below += valid && fmin(wi.z, wo.z) < -HORIZON;
-				if (!above || !valid)
-					continue;
-				for (int c = 0; c < MERL_CHANNELS; c++)
-					value[c][census->valid_above] = measurement->value[c][at];
-				census->valid_above++;
-			}
-}
-
-/* In double: the sum of two floats may be none. Reorders the values. */
-static double median(float *value, size_t n)
-{
-	const double below = (double)gsl_stats_float_select(value, 1, n, (n - 1) / 2);
-
-	return below / 2 + (double)gsl_stats_float_select(value, 1, n, n / 2) / 2;
-}
-
-static enum status take_census(const struct measurement *measurement, enum bins bins, struct census *census)
-{
-	const size_t n = measurement_count(measurement);
-	float *values = malloc(MERL_CHANNELS * n * sizeof(*values));
-	if (!values)
-		return STATUS_NO_MEMORY;
-	float *const value[MERL_CHANNELS] = {values, values + n, values + 2 * n};
-	*census = (struct census){0};
-	count_entries(measurement, bins, value, census);
-	for (int c = 0; c < MERL_CHANNELS; c++) {
-		struct range *range = &census->range[c];
-		*range = (struct range){NAN, NAN, NAN};
-		if (!census->valid_above)
-			continue;
-		range->min = (double)gsl_stats_float_min(value[c], 1, census->valid_above);
-		range->max = (double)gsl_stats_float_max(value[c], 1, census->valid_above);
-		range->median = median(value[c], census->valid_above);
-	}
-	free(values);
-	return STATUS_OK;
-}
 
 enum { SUSPECTS_SIZE = 256 };
 
@@ -181,7 +112,7 @@ static enum status inspect(struct csv_table *table, const struct options *option
 	enum status status = merl_read(path, options->fit.threads, &measurement, error);
 	if (status != STATUS_OK)
 		return status;
-	status = take_census(&measurement, options->fit.criterion.bins, &census);
+	status = census_take(&measurement, options->fit.criterion.bins, &census);
 	if (status == STATUS_OK)
 		status = add_file(table, path, &measurement, &census);
 	if (status != STATUS_OK)
@@ -200,7 +131,7 @@ int cmd_info(int argc, char **argv, atomic_bool *cancel)
 	struct csv_table table = csv_table_make(columns, INFO_COLUMNS);
 	code = EXIT_DONE;
 	for (int i = 0; i < options.n_paths && !*cancel; i++) {
-		if (inspect(&table, &options, options.path[i], &error)) {
+		if (inspect(&table, &options, options.path[i], &error) != STATUS_OK) {
 			report_error("%s", error.text);
 			code = EXIT_FAILED;
 		}

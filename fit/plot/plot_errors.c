@@ -61,7 +61,7 @@ static enum status write_errors_script(const char *directory, const struct error
 enum status plot_errors(const char *directory, const struct materials *materials, struct error *error)
 {
 	struct error_grid grid;
-	if (error_grid_make(materials, &grid))
+	if (error_grid_make(materials, &grid) != STATUS_OK)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	error_grid_sort(&grid);
 	enum status status = grid.n_fitted ? STATUS_OK : error_set(error, STATUS_NO_DATA, "no fit has an error");

@@ -284,7 +284,7 @@ enum status result_add_failure(struct csv_table *table, const struct result_sour
 	snprintf(text.text, sizeof text.text, "failed: %s", reason);
 	for (int i = 0; i < options->n_ndf; i++) {
 		struct row *row = row_new(source, options, options->ndf[i], text.text);
-		if (!row || row_finish(row, table, source->path))
+		if (!row || row_finish(row, table, source->path) != STATUS_OK)
 			return STATUS_NO_MEMORY;
 	}
 	return STATUS_OK;
@@ -403,10 +403,10 @@ static enum status result_ndf(char *const *row, const struct ndf_class *class, s
 			}
 		}
 	}
-	if (ndf_init_params(ndf, class, value))
+	if (ndf_init_params(ndf, class, value) != STATUS_OK)
 		return STATUS_DOMAIN;
 	*wrong = RESULT_LAMBDA;
-	if (lambda_form_find(row[RESULT_LAMBDA], &form))
+	if (lambda_form_find(row[RESULT_LAMBDA], &form) != STATUS_OK)
 		return STATUS_DOMAIN;
 	return form == LAMBDA_EXACT ? STATUS_OK : ndf_set_lambda_form(ndf, form);
 }
@@ -421,13 +421,13 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 		return bad_cell(row, RESULT_STATUS, error);
 	if (!ndf)
 		return bad_cell(row, RESULT_NDF, error);
-	if (gaf_find(row[RESULT_GAF], &options->criterion.gaf))
+	if (gaf_find(row[RESULT_GAF], &options->criterion.gaf) != STATUS_OK)
 		return bad_cell(row, RESULT_GAF, error);
-	if (fresnel_find(row[RESULT_FRESNEL], &options->fresnel))
+	if (fresnel_find(row[RESULT_FRESNEL], &options->fresnel) != STATUS_OK)
 		return bad_cell(row, RESULT_FRESNEL, error);
-	if (weight_find(row[RESULT_WEIGHT], &options->criterion.weight))
+	if (weight_find(row[RESULT_WEIGHT], &options->criterion.weight) != STATUS_OK)
 		return bad_cell(row, RESULT_WEIGHT, error);
-	if (bins_find(row[RESULT_BINS], &options->criterion.bins))
+	if (bins_find(row[RESULT_BINS], &options->criterion.bins) != STATUS_OK)
 		return bad_cell(row, RESULT_BINS, error);
 	options->criterion.max_theta = number_or(row, RESULT_MAX_THETA, 90);
 	if (!(options->criterion.max_theta > 0 && options->criterion.max_theta <= 90))
@@ -449,10 +449,10 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 	model->fresnel = options->fresnel;
 	enum result_column wrong;
 	if (ndf_is_tabulated(ndf))
-		return result_nodes(row, options->criterion.bins, &model->ndf, pwl)
+		return result_nodes(row, options->criterion.bins, &model->ndf, pwl) != STATUS_OK
 			       ? bad_cell(row, RESULT_PARAMS, error)
 			       : STATUS_OK;
-	if (result_ndf(row, ndf, &model->ndf, &wrong))
+	if (result_ndf(row, ndf, &model->ndf, &wrong) != STATUS_OK)
 		return bad_cell(row, wrong, error);
 	return STATUS_OK;
 }

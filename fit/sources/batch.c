@@ -105,7 +105,7 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 	if (status != STATUS_OK)
 		return status;
 	for (int i = 0; i < fit->n_ndf; i++) {
-		if (status == STATUS_OK && result_add(&file->rows, &source, fit, &result[i]))
+		if (status == STATUS_OK && result_add(&file->rows, &source, fit, &result[i]) != STATUS_OK)
 			status = error_set(&file->error, STATUS_NO_MEMORY, "out of memory");
 		fit_result_free(&result[i]);
 	}
@@ -148,7 +148,7 @@ static enum status process(struct run *run, struct batch_file *file)
 		/* A disk that is unavailable for a while must not replace earlier fits. */
 		if (file->unread && run->batch->store)
 			drop_known(run->batch, &source, &fit);
-		if (result_add_failure(&file->rows, &source, &fit, file->error.text))
+		if (result_add_failure(&file->rows, &source, &fit, file->error.text) != STATUS_OK)
 			csv_table_free(&file->rows); /* no memory for a row; the message is still reported */
 	}
 	return STATUS_OK;
