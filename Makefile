@@ -41,6 +41,7 @@ lib_objects := $(lib_sources:%.c=$(BUILD)/%.o)
 CFLAGS_kernel := -O3 -Wno-psabi
 CFLAGS_kernel_avx2 := $(CFLAGS_kernel) -mavx2 -DKERNEL_NAME=kernel_avx2
 CFLAGS_metrics := -O3
+CFLAGS_octave_table := -O3
 CFLAGS_bench := -O3
 # The mathematics raises no floating-point exception in its domain; the compiler may not speculate one either.
 $(BUILD)/src/%.o: fpflags := -fno-math-errno -ftrapping-math -ffp-contract=off
