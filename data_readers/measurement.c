@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "data_readers/measurement.h"
+#include "data_readers/rgl.h"
 #include "src/names.h"
 #include <stdlib.h>
 #include <sys/mman.h>
@@ -117,6 +118,7 @@ enum status measurement_require_table(const struct measurement *measurement, con
 void measurement_free(struct measurement *measurement)
 {
 	scattered_free(measurement->scattered);
+	rgl_free(measurement->rgl);
 	free(measurement->value[0]);
 	*measurement = (struct measurement){0};
 }

@@ -43,6 +43,7 @@ struct measurement {
 	int n_phi_d; /* 180 or 360: phi_d of entry k is k (or k + 1/2) degrees either way; 0: scattered */
 	float *value[MERL_CHANNELS]; /* 1/sr; in the order of measurement_at; NaN in all three channels = masked */
 	struct scattered *scattered; /* owned; NULL for a table */
+	struct rgl *rgl;             /* owned: the interpolant of a file that has its own (rgl.h); else NULL */
 	size_t n_negative;           /* entries masked for a negative value in some channel, all three being finite */
 	size_t n_nonfinite;          /* entries masked for NaN, Inf or a value beyond float in some channel */
 	size_t n_below_horizon;      /* scattered: entries left out for a direction at or below the horizon */

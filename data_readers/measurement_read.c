@@ -4,6 +4,7 @@
 #include "data_readers/cornell.h"
 #include "data_readers/merl.h"
 #include "data_readers/regular_file.h"
+#include "data_readers/rgl.h"
 #include "data_readers/samples_csv.h"
 #include "data_readers/text_quote.h"
 #include "data_readers/zemax.h"
@@ -21,14 +22,28 @@ struct format {
 	struct measurement_format_text text; /* extensions: each with its point, between blanks */
 	const char *magic;                   /* how a binary file begins; NULL: `read` is asked by extension only */
 	size_t magic_size;
-	enum status (*read)(const char *path, int threads, struct measurement *measurement, struct error *error);
+	enum status (*read)(const char *path, const struct read_options *options, struct measurement *measurement,
+			    struct error *error);
 	const struct text_format *lines;
 };
+
+static enum status read_merl(const char *path, const struct read_options *options, struct measurement *measurement,
+			     struct error *error)
+{
+	return merl_read(path, options->threads, measurement, error);
+}
+
+static enum status read_rgl(const char *path, const struct read_options *options, struct measurement *measurement,
+			    struct error *error)
+{
+	return rgl_read(path, options->gamut, measurement, error);
+}
 
 /* The first that is sure, else the first that may be, has it. A format behind another with the same extension tells what
  * is wrong only where the content points to it. */
 static const struct format formats[] = {
-	{{"merl", ".binary", "MERL table, 90 x 90 x 180 or 360"}, "\x5a\0\0\0\x5a\0\0\0", 8, merl_read, NULL},
+	{{"merl", ".binary", "MERL table, 90 x 90 x 180 or 360"}, "\x5a\0\0\0\x5a\0\0\0", 8, read_merl, NULL},
+	{{"rgl", ".bsdf", "RGL material database"}, "tensor_file", 12, read_rgl, NULL},
 	{{"csv", ".csv", "samples as CSV"}, NULL, 0, NULL, &samples_csv},
 	{{"alta", ".dat .alta .data", "ALTA text"}, NULL, 0, NULL, &alta},
 	{{"cornell", ".brdf", "Cornell light measurement laboratory, text"}, NULL, 0, NULL, &cornell},
@@ -183,7 +198,7 @@ enum status measurement_read(const char *path, const struct read_options *option
 		status = choose(path, head, &format, &why);
 	free(head);
 	if (status == STATUS_OK && format->read) {
-		status = format->read(path, how->threads, measurement, error);
+		status = format->read(path, how, measurement, error);
 		measurement->format = status == STATUS_OK ? format->text.name : NULL;
 		return status;
 	}

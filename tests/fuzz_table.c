@@ -223,7 +223,7 @@ static void rewrite(struct store *store)
 		char *const *row = store->old.row[i];
 		const struct result_source source = {row[RESULT_PATH], row[RESULT_INPUT], row[RESULT_OPTIONS]};
 		PROMISE(result_failed(row) || strcmp(row[RESULT_VERSION], STDFIT_VERSION) ||
-			store_has(store, &source, row[RESULT_NDF]));
+			store->doubtful[i] || store_has(store, &source, row[RESULT_NDF]));
 	}
 	if (store->old.n_rows) {
 		char *const *row = store->old.row[0];

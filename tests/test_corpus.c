@@ -58,6 +58,12 @@ static void merl_reader_keeps_its_promises(void **state)
 	run_corpus("merl", fuzz_merl);
 }
 
+static void rgl_reader_keeps_its_promises(void **state)
+{
+	(void)state;
+	run_corpus("rgl", fuzz_rgl);
+}
+
 static void result_tables_keep_their_promises(void **state)
 {
 	(void)state;
@@ -118,6 +124,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(json_check_knows_json),
 		cmocka_unit_test(merl_reader_keeps_its_promises),
+		cmocka_unit_test(rgl_reader_keeps_its_promises),
 		cmocka_unit_test(result_tables_keep_their_promises),
 		cmocka_unit_test(command_lines_keep_their_promises),
 		cmocka_unit_test(csv_reader_keeps_its_promises),

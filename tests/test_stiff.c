@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fits of hard tables, made in memory: each ends after a bounded number of looks, below every simpler model, and says what
+/* Fits of hard tables, made in memory: each ends after a bounded number of evaluations, below every simpler model, and says what
  * it cannot know. Every twelfth phi_d stands for all of them. Some cases are left out unless the environment has
  * STDFIT_STABILITY=1: then random starts must find nothing better, either, and it takes minutes. */
 #include "check.h"

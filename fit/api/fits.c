@@ -54,8 +54,7 @@ static enum stdfit_status read_ndfs(const char *names, struct fit_options *inner
 			return api_fail(error, STATUS_DOMAIN, "ndfs: expected at most %d", FIT_NDFS_MAX);
 		inner->ndf[inner->n_ndf] = ndf_find(name);
 		if (!inner->ndf[inner->n_ndf++])
-			return api_fail(error, STATUS_DOMAIN, "ndfs: there is none called '%.*s'",
-					length < 100 ? (int)length : 100, at);
+			return api_unknown(error, "ndfs", length < sizeof name ? name : at);
 		at = at[length] ? at + length + 1 : NULL;
 	}
 	return STDFIT_OK;

@@ -34,10 +34,11 @@
 
 const struct option_spec option_specs[] = {
 	{"output", 'o', KIND_TEXT, FIT, NOT_RECORDED, "FILE",
-	 "write the table there; an older FILE becomes FILE~, with --resume only if it has rows to redo", AT(output), 0,
-	 0},
+	 "write the table there, - for standard output; an older FILE becomes FILE~, with --resume only if it has rows "
+	 "to redo",
+	 AT(output), 0, 0},
 	{"output", 'o', KIND_TEXT, COMPARE | MERGE, NOT_RECORDED, "FILE",
-	 "write the table there; an older FILE becomes FILE~", AT(output), 0, 0},
+	 "write the table there, - for standard output; an older FILE becomes FILE~", AT(output), 0, 0},
 	{"output", 'o', KIND_TEXT, EXPORT, NOT_RECORDED, "FILE", "write it there, not to standard output", AT(output),
 	 0, 0},
 	{"format", 0, KIND_FORMAT, EXPORT, NOT_RECORDED, "NAME", "what to write", AT(format), 0, 0},

@@ -4,6 +4,7 @@
 #include "fit/cli/files.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/option_value.h"
+#include "fit/cli/outputs.h"
 #include "fit/cli/report.h"
 #include "fit/cli/text_stream.h"
 #include "fit/error/objective.h"
@@ -345,22 +346,22 @@ int options_check_fit(const struct options *options)
 	return -1;
 }
 
-/* An output must not replace an input or the other output. compare and merge keep the table that they replace beside it.
- * fit and compare check the files of a directory themselves. */
-static int check_outputs(const struct options *options)
+/* -o - and -o /dev/stdout of a command that writes to standard output anyway: as without -o, but CSV on a terminal, too. */
+static int find_standard_output(struct options *options)
 {
-	const char *const output[] = {options->output, options->trace};
-	const bool keeps = options->command == COMMAND_COMPARE || options->command == COMMAND_MERGE;
-	for (int o = 0; o < 2; o++) {
-		bool read = output[o] && options->from && files_same(options->from, output[o]);
-		for (int i = 0; i < options->n_paths && output[o]; i++)
-			read |= files_same(options->path[i], output[o]) && !(keeps && csv_is_name(options->path[i]));
-		if (read)
-			return options_usage(options->command, "--%s names a file that is to be read",
-					     o ? "trace" : "output");
-	}
-	if (options->output && options->trace && files_same(options->output, options->trace))
-		return options_usage(options->command, "--trace and --output name the same file");
+	const enum command command = options->command;
+	const bool standard = options->output && outputs_standard(options->output);
+	if (options->trace && outputs_standard(options->trace) && (standard || !options->output))
+		return options_usage(command, "--trace on standard output needs -o FILE");
+	if (!standard)
+		return -1;
+	if (command == COMMAND_PLOT || command == COMMAND_REPORT)
+		return options_usage(command, "expected -o DIR, a directory: there are several files to write");
+	if (options->resume)
+		return options_usage(command, "--resume needs -o FILE, not standard output");
+	options->to_standard_output = true;
+	if (command != COMMAND_EXPORT || options->format != EXPORT_MERL)
+		options->output = NULL;
 	return -1;
 }
 
@@ -392,8 +393,10 @@ int options_parse(struct options *options, enum command command, int argc, char 
 	if (!options->n_paths && commands[command].arguments[0] != '[')
 		return options_usage(command, "expected %s, found nothing", commands[command].arguments);
 	const bool fits = command == COMMAND_FIT || command == COMMAND_COMPARE || command == COMMAND_BENCH;
-	const int wrong = fits ? options_check_fit(options) : -1;
-	return wrong >= 0 ? wrong : check_outputs(options);
+	int wrong = find_standard_output(options);
+	if (wrong < 0 && fits)
+		wrong = options_check_fit(options);
+	return wrong >= 0 ? wrong : outputs_check(options, NULL, 0);
 }
 
 bool options_given(const struct options *options, const char *name)
@@ -465,7 +468,7 @@ enum show options_show(const struct options *options)
 {
 	if (options->json && !options->output)
 		return SHOW_JSON;
-	if (options->readable || isatty(STDOUT_FILENO))
+	if (options->readable || (isatty(STDOUT_FILENO) && !options->to_standard_output))
 		return SHOW_READABLE;
 	return options->output ? SHOW_NOTHING : SHOW_CSV;
 }

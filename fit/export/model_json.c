@@ -146,7 +146,7 @@ static enum status read_model(const json_t *json, struct model_json *read, struc
 		status = read_ndf(json, read, error);
 	if (status == STATUS_OK)
 		status = read_terms(json, read, fit, error);
-	return status ? status : read_fitted(json, read, fit, error);
+	return status != STATUS_OK ? status : read_fitted(json, read, fit, error);
 }
 
 /* The tree of a text; NULL, and the reason. */

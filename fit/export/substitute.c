@@ -215,7 +215,7 @@ static enum status fit_substitute(struct export *export, const struct target *ta
 	}
 	if (status == STATUS_OK && target->gray)
 		average_specular(&export->model);
-	*blended = !status && target->blend && !fits_blend(&export->model);
+	*blended = status == STATUS_OK && target->blend && !fits_blend(&export->model);
 	if (*blended)
 		status = fit_blend(context, measurement, &fit, &export->model, error);
 	if (status == STATUS_OK && target->gray && fit.diffuse &&

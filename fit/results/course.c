@@ -53,7 +53,6 @@ enum status course_judge(struct course *course, const struct sample_set *full, c
 			if (fit_cancelled(options))
 				status = STATUS_INTERRUPTED;
 			else if (p->ndf == ready && is_thinned(p)) {
-				objective_jump(&objective, &shape);
 				p->error = objective_eval(&objective, &shape, 1e-6, false, &linear);
 			}
 		}
