@@ -307,7 +307,7 @@ void stdfit_result_clear(struct stdfit_result *result);
 
 typedef struct stdfit_context stdfit_context;
 
-/* stdfit_context_new - what fits of measurements with this n_phi_d share under the options' gaf, weight, bins and
+/* stdfit_context_new - what fits of measurements with this n_phi_d, 0 for scattered entries, share under the options' gaf, weight, bins and
  * max_theta. A fit with others is STDFIT_DOMAIN. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_context_new(stdfit_context **context, int n_phi_d,
 							const struct stdfit_options *options,

@@ -111,7 +111,7 @@ static void odd_things_called_binary_are_refused(void **state)
 	assert_int_equal(table.n_rows, 6);
 	csv_table_free(&table);
 	stdfit("odd/directory.binary " CHEAP);
-	expect_error(1, "no *.binary in this directory");
+	expect_error(1, "no measurement of a known format in this directory");
 }
 
 static void ten_thousand_files_are_listed(void **state)

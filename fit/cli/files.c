@@ -178,7 +178,7 @@ static int add_directory(struct files *files, const char *path, const struct sta
 	const bool stored = seen_add(&walk.seen, info) >= 0 && walk_directory(&walk, path);
 	free(walk.seen.entry);
 	if (stored && !walk.problems && files->n == before && !*cancel) {
-		cannot_read(path, "no measurement in this directory");
+		cannot_read(path, "no measurement of a known format in this directory");
 		walk.problems++;
 	}
 	return stored ? walk.problems : -1;
