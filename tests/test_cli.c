@@ -704,6 +704,56 @@ static void within_takes_the_simplest(void **state)
 	csv_table_free(&table);
 }
 
+/* Zeros at theta_d of 20 to 49 degrees of the rows 30 to 44 of theta_h. */
+static void dig_a_hole(const char *path)
+{
+	static const double zeros[30 * 180];
+	const int fd = open(path, O_WRONLY);
+	assert_true(fd >= 0);
+	for (int c = 0; c < 3; c++)
+		for (int i = 30; i < 45; i++)
+			assert_int_equal(pwrite(fd, zeros, sizeof zeros, 12 + 8L * 180 * ((c * 90 + i) * 90 + 20)),
+					 sizeof zeros);
+	assert_int_equal(close(fd), 0);
+}
+
+static void faults_of_the_data_are_told(void **state)
+{
+	(void)state;
+	shell("mkdir holes; cp a.binary holes/h.binary");
+	dig_a_hole("holes/h.binary");
+	stdfit("info holes/h.binary a.binary --json");
+	expect_code(0);
+	expect_out("exact zeros beside bright values: --zero-is-missing leaves them out");
+	expect_out("\"suspects\": null");
+	expect_out("\"measured_0\": 1,");
+	stdfit("holes/h.binary a.binary --ndf ggx --no-specular -o holes.csv");
+	expect_code(0);
+	expect_part(last.err, "stdfit: 'holes/h.binary' looks wrong: ", __LINE__);
+	expect_part(last.err, "--zero-is-missing", __LINE__);
+	assert_null(strstr(last.err, "a.binary'"));
+	struct csv_table table = read_table("holes.csv");
+	assert_string_equal(table.row[0][RESULT_SUSPECTS], "");
+	assert_string_equal(table.row[1][RESULT_SUSPECTS], "zeros");
+	csv_table_free(&table);
+	/* The row says that zeros were left out: so resume, merge, compare and eval know. */
+	stdfit("holes/h.binary a.binary --ndf ggx --no-specular --zero-is-missing --resume -o holes.csv");
+	expect_code(0);
+	assert_string_equal(last.err, "");
+	table = read_table("holes.csv");
+	expect_part(table.row[1][RESULT_OPTIONS], " max-theta=90 zero-is-missing=yes unbounded=no", __LINE__);
+	assert_string_equal(table.row[1][RESULT_SUSPECTS], "");
+	assert_true(result_number(table.row[1], RESULT_SAMPLES) < result_number(table.row[0], RESULT_SAMPLES));
+	char *error = strdup(table.row[1][RESULT_ERROR_COSINE]);
+	csv_table_free(&table);
+	stdfit("eval holes/h.binary --from holes.csv");
+	expect_out(error);
+	free(error);
+	shell("mv holes.csv~ before.csv");
+	stdfit("merge holes.csv before.csv -o all.csv");
+	expect_error(1, "zero-is-missing");
+}
+
 static void noise_follows_the_seed(void **state)
 {
 	(void)state;
@@ -743,6 +793,7 @@ int main(void)
 		cmocka_unit_test(a_reader_that_is_gone),
 		cmocka_unit_test(compare_tables),
 		cmocka_unit_test(within_takes_the_simplest),
+		cmocka_unit_test(faults_of_the_data_are_told),
 		cmocka_unit_test(noise_follows_the_seed),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);

@@ -37,6 +37,7 @@ enum recorded {
 	NOT_RECORDED,
 	RECORDED,
 	RECORDED_WITHIN,    /* only with --within */
+	RECORDED_IF_ON,     /* a switch, only when it is on */
 	RECORDED_ALGORITHM, /* only with another algorithm than the default */
 };
 

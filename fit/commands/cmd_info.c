@@ -7,6 +7,7 @@
 #include "fit/commands/commands.h"
 #include "fit/error/entries.h"
 #include "fit/error/sample_set.h"
+#include "fit/error/suspects.h"
 
 #include <gsl/gsl_statistics_float.h>
 #include <inttypes.h>
@@ -25,8 +26,10 @@ enum info_column {
 	INFO_NONFINITE,
 	INFO_ABOVE,
 	INFO_VALID_ABOVE,
-	INFO_RANGE, /* min, median, max of red, green, blue */
-	INFO_SUSPECTS = INFO_RANGE + 9,
+	INFO_RANGE,                   /* min, median, max of red, green, blue */
+	INFO_ALBEDO = INFO_RANGE + 9, /* red, green, blue and the share measured, at 0, 30 and 60 degrees */
+	INFO_ENDS_AT = INFO_ALBEDO + 4 * SUSPECTS_ALBEDOS,
+	INFO_SUSPECTS,
 	INFO_COLUMNS
 };
 
@@ -51,6 +54,19 @@ static const struct csv_column columns[INFO_COLUMNS] = {
 	{"min_b", true},
 	{"median_b", true},
 	{"max_b", true},
+	[INFO_ALBEDO] = {"albedo_0_r", true},
+	{"albedo_0_g", true},
+	{"albedo_0_b", true},
+	{"measured_0", true},
+	{"albedo_30_r", true},
+	{"albedo_30_g", true},
+	{"albedo_30_b", true},
+	{"measured_30", true},
+	{"albedo_60_r", true},
+	{"albedo_60_g", true},
+	{"albedo_60_b", true},
+	{"measured_60", true},
+	[INFO_ENDS_AT] = {"ends_at", true},
 	[INFO_SUSPECTS] = {"suspects", false},
 };
 
@@ -120,7 +136,7 @@ static enum status take_census(const struct measurement *measurement, enum bins 
 	return STATUS_OK;
 }
 
-enum { SUSPECTS_SIZE = 256 };
+enum { SUSPECTS_SIZE = 256 + SUSPECTS_TEXT };
 
 static void add_count(char *text, const char *what, size_t n)
 {
@@ -130,8 +146,10 @@ static void add_count(char *text, const char *what, size_t n)
 }
 
 /* What a sound measurement does not have. */
-static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *measurement, const struct census *census)
+static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *measurement, const struct census *census,
+			   const struct suspects *suspects)
 {
+	char explained[SUSPECTS_TEXT];
 	const bool zero = census->range[0].max <= 0 && census->range[1].max <= 0 && census->range[2].max <= 0;
 	snprintf(text, SUSPECTS_SIZE, "%s",
 		 !census->valid_above ? "no valid entry above the horizon"
@@ -140,10 +158,14 @@ static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *m
 	add_count(text, "masked above the horizon", census->above - census->valid_above);
 	add_count(text, "valid below the horizon", census->valid_below);
 	add_count(text, "non-finite", measurement->n_nonfinite);
+	const size_t used = strlen(text);
+	if (suspects->found)
+		snprintf(text + used, SUSPECTS_SIZE - used, "%s%s", used ? "; " : "",
+			 suspects_explain(suspects, explained));
 }
 
 static enum status add_file(struct csv_table *table, const char *path, const struct measurement *measurement,
-			    const struct census *census)
+			    const struct census *census, const struct suspects *found)
 {
 	double number[INFO_COLUMNS] = {
 		[INFO_SIZE] = (double)measurement->file_size,
@@ -161,12 +183,18 @@ static enum status add_file(struct csv_table *table, const char *path, const str
 		number[INFO_RANGE + 3 * c + 1] = census->range[c].median;
 		number[INFO_RANGE + 3 * c + 2] = census->range[c].max;
 	}
+	for (int a = 0; a < SUSPECTS_ALBEDOS; a++) {
+		for (int c = 0; c < MERL_CHANNELS; c++)
+			number[INFO_ALBEDO + 4 * a + c] = found->albedo[a][c];
+		number[INFO_ALBEDO + 4 * a + 3] = found->measured[a];
+	}
+	number[INFO_ENDS_AT] = found->ends_at;
 	char text[INFO_COLUMNS][CSV_NUMBER_SIZE], hash[CSV_NUMBER_SIZE], suspects[SUSPECTS_SIZE];
 	const char *cell[INFO_COLUMNS];
 	for (int c = 0; c < INFO_COLUMNS; c++)
 		cell[c] = csv_number(text[c], number[c]);
 	snprintf(hash, sizeof hash, "%016" PRIx64, measurement->file_hash);
-	write_suspects(suspects, measurement, census);
+	write_suspects(suspects, measurement, census, found);
 	cell[INFO_PATH] = path;
 	cell[INFO_HASH] = hash;
 	cell[INFO_SUSPECTS] = suspects;
@@ -178,12 +206,14 @@ static enum status inspect(struct csv_table *table, const struct options *option
 {
 	struct measurement measurement;
 	struct census census;
+	struct suspects suspects;
 	enum status status = merl_read(path, options->fit.threads, &measurement, error);
 	if (status != STATUS_OK)
 		return status;
+	suspects_find(&measurement, &options->fit.criterion, &suspects);
 	status = take_census(&measurement, options->fit.criterion.bins, &census);
 	if (status == STATUS_OK)
-		status = add_file(table, path, &measurement, &census);
+		status = add_file(table, path, &measurement, &census, &suspects);
 	if (status != STATUS_OK)
 		error_set(error, status, "out of memory");
 	measurement_free(&measurement);

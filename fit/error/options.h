@@ -27,13 +27,15 @@ struct criterion {
 	enum gaf gaf; /* of the model: that of V-grooves is a factor of the geometry */
 	enum weight weight;
 	enum bins bins;
-	double max_theta; /* degrees, (0, 90]; entries with theta_i or theta_o above it are dropped; 90 = none */
+	double max_theta;     /* degrees, (0, 90]; entries with theta_i or theta_o above it are dropped; 90 = none */
+	bool zero_is_missing; /* entries that are 0 in all channels count as not measured */
 };
 
 /* criterion_equal - whether two are the same in every field. */
 static inline bool criterion_equal(const struct criterion *a, const struct criterion *b)
 {
-	return a->gaf == b->gaf && a->weight == b->weight && a->bins == b->bins && a->max_theta == b->max_theta;
+	return a->gaf == b->gaf && a->weight == b->weight && a->bins == b->bins && a->max_theta == b->max_theta &&
+	       a->zero_is_missing == b->zero_is_missing;
 }
 
 /* Domain of the fit. */

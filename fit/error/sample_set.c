@@ -212,7 +212,7 @@ static int valid_members(const struct geometry *g, const struct measurement *mea
 	for (int a = 0; a < count; a++) {
 		const size_t entry = measurement_at(g->n_phi_d, 0, g->row[n], k[a]);
 
-		if (!isnan(measurement->value[0][entry]))
+		if (!entry_is_missing(measurement, &g->criterion, entry))
 			at[valid++] = entry;
 	}
 	return valid;

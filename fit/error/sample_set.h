@@ -6,6 +6,7 @@
 #include "fit/error/entries.h"
 #include "fit/error/kernel.h"
 #include "fit/error/options.h"
+#include <math.h>
 #include <stddef.h>
 
 enum { MERL_ROWS = MERL_THETA_H * MERL_THETA_D };
@@ -80,5 +81,15 @@ double weight_at(enum weight weight, int i, int j, double cos_i, double cos_o);
 /* max_theta_cos - the smallest cosine that `max_theta` degrees allow; entry_in_range - whether an entry takes part. */
 double max_theta_cos(double max_theta);
 bool entry_in_range(struct vec3 wi, struct vec3 wo, double min_cos);
+
+/* entry_is_missing - whether the entry at this index of a plane is not measured: masked, or, where zeros count so, 0 in all
+ * channels. */
+static inline bool entry_is_missing(const struct measurement *measurement, const struct criterion *criterion, size_t at)
+{
+	if (isnan(measurement->value[0][at]))
+		return true;
+	return criterion->zero_is_missing && measurement->value[0][at] == 0 && measurement->value[1][at] == 0 &&
+	       measurement->value[2][at] == 0;
+}
 
 #endif
