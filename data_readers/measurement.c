@@ -55,8 +55,43 @@ enum status measurement_alloc(struct measurement *measurement, int n_phi_d)
 	return STATUS_OK;
 }
 
+static void scattered_free(struct scattered *scattered)
+{
+	if (!scattered)
+		return;
+	free(scattered->wi);
+	free(scattered->wo);
+	free(scattered->value[0]);
+	free(scattered->solid_angle);
+	free(scattered);
+}
+
+enum status measurement_scattered(struct measurement *measurement, size_t n)
+{
+	struct scattered *s = calloc(1, sizeof *s);
+
+	*measurement = (struct measurement){.scattered = s};
+	if (!s || n > SIZE_MAX / sizeof *s->wi) {
+		measurement_free(measurement);
+		return STATUS_NO_MEMORY;
+	}
+	s->n = n;
+	s->wi = malloc(n * sizeof *s->wi);
+	s->wo = malloc(n * sizeof *s->wo);
+	s->value[0] = malloc(n * MERL_CHANNELS * sizeof *s->value[0]);
+	s->solid_angle = malloc(n * sizeof *s->solid_angle);
+	if (!s->wi || !s->wo || !s->value[0] || !s->solid_angle) {
+		measurement_free(measurement);
+		return STATUS_NO_MEMORY;
+	}
+	for (int c = 1; c < MERL_CHANNELS; c++)
+		s->value[c] = s->value[0] + (size_t)c * n;
+	return STATUS_OK;
+}
+
 void measurement_free(struct measurement *measurement)
 {
+	scattered_free(measurement->scattered);
 	free(measurement->value[0]);
 	*measurement = (struct measurement){0};
 }

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* measurement - a measured isotropic BRDF as a table over (theta_h, theta_d, phi_d), independent of the file format. */
+/* measurement - a measured BRDF, independent of the file format: a table over (theta_h, theta_d, phi_d), isotropic, or
+ * scattered entries that lie anywhere. */
 #ifndef MEASUREMENT_H
 #define MEASUREMENT_H
 
 #include "src/halfdiff.h"
 #include "src/status.h"
+#include "src/vec3.h"
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -18,11 +21,30 @@ enum bins {
 
 enum { MERL_THETA_H = 90, MERL_THETA_D = 90, MERL_CHANNELS = 3 };
 
+/* How a sample may be turned without changing what is measured. */
+enum symmetry {
+	SYMMETRY_ISOTROPIC,  /* by any angle about its normal */
+	SYMMETRY_PLANE,      /* not, but it is its own mirror image in the plane y = 0 */
+	SYMMETRY_ANISOTROPIC /* not at all */
+};
+
+/* struct scattered - entries that lie anywhere. What could not be used is not among them, only counted. */
+struct scattered {
+	size_t n; /* at least 1 */
+	enum symmetry symmetry;
+	bool gray;                   /* one channel was measured: the three values of an entry are equal */
+	struct vec3 *wi, *wo;        /* n unit vectors each, z > 0; x is the sample's own axis of azimuth 0 */
+	float *value[MERL_CHANNELS]; /* n each, 1/sr, finite and >= 0; one block of memory */
+	float *solid_angle;          /* n: the part of the two hemispheres that the entry stands for, sr^2, >= 0 */
+};
+
 struct measurement {
-	int n_phi_d;                 /* 180 or 360: phi_d of entry k is k (or k + 1/2) degrees either way */
+	int n_phi_d; /* 180 or 360: phi_d of entry k is k (or k + 1/2) degrees either way; 0: scattered */
 	float *value[MERL_CHANNELS]; /* 1/sr; in the order of measurement_at; NaN in all three channels = masked */
+	struct scattered *scattered; /* owned; NULL for a table */
 	size_t n_negative;           /* entries masked for a negative value in some channel, all three being finite */
 	size_t n_nonfinite;          /* entries masked for NaN, Inf or a value beyond float in some channel */
+	size_t n_below_horizon;      /* scattered: entries left out for a direction at or below the horizon */
 	uint64_t file_size;          /* bytes of the file read; 0 for a table that was made */
 	uint64_t file_hash;          /* XXH3, 64 bits, of all those bytes, as `xxhsum -H3` prints it */
 };
@@ -37,12 +59,17 @@ MUST_CHECK enum status measurement_alloc(struct measurement *measurement, int n_
 /* measurement_reserve - the same with unset values, for a reader that sets every one: it saves a pass over the memory. Both
  * return STATUS_DOMAIN for another n_phi_d, STATUS_NO_MEMORY; *measurement is then cleared. */
 MUST_CHECK enum status measurement_reserve(struct measurement *measurement, int n_phi_d);
+/* measurement_scattered - room for n >= 1 scattered entries, all values unset, isotropic. STATUS_NO_MEMORY; *measurement is
+ * then cleared. A reader that finds fewer lowers scattered->n. */
+MUST_CHECK enum status measurement_scattered(struct measurement *measurement, size_t n);
 /* measurement_free - releases the planes and clears the struct; harmless on a zeroed one. */
 void measurement_free(struct measurement *measurement);
 
+/* measurement_count - entries of one channel, masked ones included. */
 static inline size_t measurement_count(const struct measurement *measurement)
 {
-	return (size_t)MERL_THETA_H * MERL_THETA_D * (size_t)measurement->n_phi_d;
+	return measurement->scattered ? measurement->scattered->n
+				      : (size_t)MERL_THETA_H * MERL_THETA_D * (size_t)measurement->n_phi_d;
 }
 
 /* measurement_at - the index of entry (i, j, k) of theta_h, theta_d, phi_d in a plane with this n_phi_d, in the order of the
