@@ -353,6 +353,17 @@ static void directories_below(void **state)
 	assert_int_equal(table.n_rows, 2);
 	assert_string_equal(table.row[0][RESULT_PATH], "tree/top.binary");
 	csv_table_free(&table);
+	/* Where there is nothing but below, -r is mentioned; capitals count. */
+	shell("mkdir upper; ln a.binary upper/A.BINARY");
+	stdfit("tree/b " CHEAP);
+	expect_error(1, "-r takes those in the directories below");
+	shell("mkdir -p hollow/x; exec \"$STDFIT\" hollow");
+	expect_error(1, "no *.binary in this directory\n");
+	stdfit("upper --ndf ggx --no-specular");
+	expect_code(0);
+	table = read_table("stdout");
+	assert_string_equal(table.row[0][RESULT_MATERIAL], "A");
+	csv_table_free(&table);
 	stdfit("-r tree/ " CHEAP);
 	expect_code(0);
 	table = read_table("stdout");

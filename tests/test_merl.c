@@ -554,7 +554,6 @@ static void test_refuses_wrong_dimensions(void **state)
 		{INT32_MAX, INT32_MAX, INT32_MAX},
 		{INT32_MIN, INT32_MIN, INT32_MIN},
 		{90, 90, 720},
-		{0x5a000000, 0x5a000000, -0x4c000000}, /* the right ones, big-endian */
 	};
 	char words[128];
 
@@ -579,6 +578,34 @@ static void test_refuses_text(void **state)
 		check_refused(make_file(*state, "x.csv", texts[t], length, (off_t)length), STATUS_FORMAT,
 			      "looks like text");
 	}
+}
+
+static void test_names_foreign_files(void **state)
+{
+	static const struct {
+		const char *head;
+		size_t size;
+		const char *words;
+	} kinds[] = {
+		{"\x1f\x8b\x08\0\0\0\0\0\0\x03xx", 12, "gzip: expand it with gunzip"},
+		{"\xfd"
+		 "7zXZ\0\0\4xxxx",
+		 12, "xz: expand it with unxz"},
+		{"\x28\xb5\x2f\xfdxxxxxxxx", 12, "zstd: expand it with unzstd"},
+		{"BZh91AY&SYxx", 12, "bzip2: expand it with bunzip2"},
+		{"PK\3\4xxxxxxxx", 12, "zip archive: unpack it with unzip"},
+		{"tensor_file\0\1\0", 14, "RGL measurement (.bsdf)"},
+		{"\0\0\0\x5a\0\0\0\x5a\0\0\0\xb4", 12, "big-endian"},
+		{"\0\0\0\x5a\0\0\0\x5a\0\0\1\x68", 12, "big-endian"},
+	};
+
+	for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+		check_refused(make_file(*state, "x.binary", kinds[k].head, kinds[k].size, SIZE_180), STATUS_FORMAT,
+			      kinds[k].words);
+	check_refused(make_file(*state, "x.binary", "\x1f\x8b\x08", 3, 3), STATUS_FORMAT, "gunzip");
+	check_refused(make_file(*state, "x.binary", "tensor_file", 11, 11), STATUS_FORMAT, "looks like text");
+	check_refused(make_table(*state, "x", 90, 90, 180, 12 + (SIZE_180 - 12) / 2), STATUS_FORMAT,
+		      "numbers of 4 bytes");
 }
 
 static void test_refuses_huge_file(void **state)
@@ -983,6 +1010,7 @@ int main(void)
 		TEST(test_refuses_wrong_sizes),
 		TEST(test_refuses_wrong_dimensions),
 		TEST(test_refuses_text),
+		TEST(test_names_foreign_files),
 		TEST(test_refuses_huge_file),
 		TEST(test_refuses_unreadable),
 		TEST(test_reading_goes_wrong),

@@ -455,13 +455,21 @@ static unsigned judge_values(struct tally *t, struct suspects *s)
 void suspects_find(const struct measurement *measurement, const struct criterion *criterion, struct suspects *suspects)
 {
 	static const double theta_i[SUSPECTS_ALBEDOS] = {0, M_PI / 6, M_PI / 3};
+	static const struct suspects unknown = {.ends_at = NAN,
+						.albedo = {{NAN, NAN, NAN}, {NAN, NAN, NAN}, {NAN, NAN, NAN}},
+						.measured = {NAN, NAN, NAN}};
+
+	if (measurement->scattered) {
+		*suspects = unknown;
+		return;
+	}
 	struct tally t = {.measurement = measurement,
 			  .bins = criterion->bins,
 			  .entries = entries_make(criterion->bins, measurement->n_phi_d),
 			  .min_cos = fmax(max_theta_cos(criterion->max_theta), 1e-9),
 			  .zero_is_missing = criterion->zero_is_missing};
 
-	*suspects = (struct suspects){.found = 0};
+	*suspects = (struct suspects){.ends_at = NAN};
 	count_all(&t);
 	for (int a = 0; a < SUSPECTS_ALBEDOS; a++)
 		find_albedo(&t, theta_i[a], suspects->albedo[a], &suspects->measured[a]);

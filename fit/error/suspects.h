@@ -37,7 +37,8 @@ struct suspects {
 };
 
 /* suspects_find - looks at the entries that the criterion takes: its bins, max_theta and zero_is_missing. Some 3 ms; takes
- * no memory. The albedos are of all entries, whatever max_theta is. */
+ * no memory. The albedos are of all entries, whatever max_theta is. Of scattered entries nothing is found: albedos,
+ * shares and ends_at are NaN. */
 void suspects_find(const struct measurement *measurement, const struct criterion *criterion, struct suspects *suspects);
 
 enum { SUSPECTS_WORDS = 128, SUSPECTS_TEXT = 640 };

@@ -7,6 +7,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 const struct csv_column result_columns[RESULT_COLUMNS] = {
 	[RESULT_MATERIAL] = {"material", false},
@@ -82,7 +83,7 @@ char *result_material(const char *path)
 	if (!name)
 		return NULL;
 	const size_t length = strlen(name), cut = sizeof suffix - 1;
-	if (length > cut && !strcmp(name + length - cut, suffix))
+	if (length > cut && !strcasecmp(name + length - cut, suffix))
 		name[length - cut] = '\0';
 	return name;
 }

@@ -76,7 +76,7 @@ bool result_is_input(const char *input, const struct measurement *measurement);
 MUST_CHECK enum status result_check_input(const char *input, const struct measurement *measurement, const char *path,
 					  struct error *error);
 
-/* result_material - newly allocated: the name of a file without its directory and `.binary`; NULL: out of memory. */
+/* result_material - newly allocated: the name of a file without its directory and `.binary`, in letters of either case; NULL: out of memory. */
 char *result_material(const char *path);
 
 /* result_add - appends the row of one fitted model. STATUS_NO_MEMORY. */
