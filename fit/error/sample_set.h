@@ -41,7 +41,8 @@ struct sample_set {
 	int32_t *q_i, *q_o;          /* n_blocks * KERNEL_BLOCK of each */
 	float *geometric_factor, *w;
 	uint16_t *row;
-	float *value;              /* w m; per block: channel by channel, first members, then second ones */
+	float *value;              /* unit w m; per block: channel by channel, first members, then second ones */
+	double unit;               /* a power of two: 1 but for a table so faint that floats would be denormal */
 	double sum[MERL_CHANNELS]; /* sum of w m per channel */
 	double sum_w;              /* sum of w over the entries of one channel */
 	size_t n_entries;          /* entries of three channels */
