@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program itself: exit codes, both streams, bad input, batches, kill and resume. Runs $STDFIT or build/stdfit. */
+#include "fit/cli/stack.h"
 #include "run_program.h"
 #include "src/energy.h"
 
@@ -765,6 +766,43 @@ static void faults_of_the_data_are_told(void **state)
 	expect_error(1, "zero-is-missing");
 }
 
+static void small_stacks_are_made_larger_or_told(void **state)
+{
+	static const struct {
+		const char *text;
+		size_t bytes; /* 0: no size */
+	} sizes[] = {{"16k", 16384},
+		     {" 16 K ", 16384},
+		     {"16", 16384},
+		     {"1024B", 1024},
+		     {"2M", 2 << 20},
+		     {"1g", 1 << 30},
+		     {"", 0},
+		     {"k", 0},
+		     {"-1", 0},
+		     {"1kk", 0},
+		     {"1x", 0},
+		     {"1 2", 0},
+		     {"99999999999999999999", 0},
+		     {"99999999999G", 0}};
+	(void)state;
+	for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+		size_t bytes = 0;
+		assert_int_equal(stack_parse_size(sizes[s].text, &bytes), sizes[s].bytes > 0);
+		assert_int_equal(bytes, sizes[s].bytes);
+	}
+	shell("ulimit -S -s 128; exec \"$STDFIT\" a.binary --threads 2 -q " CHEAP);
+	expect_code(0);
+	shell("ulimit -s 128; exec \"$STDFIT\" a.binary --threads 2 -q " CHEAP);
+	expect_error(1, "the stack may not grow beyond 128 kB: expected 256 or more (ulimit -s)");
+	shell("OMP_STACKSIZE=16k exec \"$STDFIT\" a.binary --threads 2 -q " CHEAP);
+	expect_error(1, "OMP_STACKSIZE=16k is too small: expected 256K or more, or none");
+	shell("OMP_NUM_THREADS=99999 exec \"$STDFIT\" eval a.binary --kd 0.5");
+	expect_code(0);
+	stdfit("a.binary --threads 99999");
+	expect_error(2, "bad value '99999' for --threads: expected a whole number from 1 to 1024");
+}
+
 static void noise_follows_the_seed(void **state)
 {
 	(void)state;
@@ -805,6 +843,7 @@ int main(void)
 		cmocka_unit_test(compare_tables),
 		cmocka_unit_test(within_takes_the_simplest),
 		cmocka_unit_test(faults_of_the_data_are_told),
+		cmocka_unit_test(small_stacks_are_made_larger_or_told),
 		cmocka_unit_test(noise_follows_the_seed),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);

@@ -56,7 +56,7 @@ const struct option_spec option_specs[] = {
 	{"quiet", 'q', KIND_ON, SEARCHES | RENDER, NOT_RECORDED, NULL, "no progress line, no summary", AT(quiet), 0, 0},
 	{"quiet", 'q', KIND_ON, EXPORT, NOT_RECORDED, NULL, "no words but errors", AT(quiet), 0, 0},
 	{"threads", 0, KIND_INT, SEARCHES | MODEL | SOURCES, NOT_RECORDED, "N", "threads; changes no result",
-	 AT(fit.threads), 1, 1024},
+	 AT(fit.threads), 1, FIT_THREADS_MAX},
 	{"ndf", 0, KIND_NDFS, FITS | RENDER, RECORDED_WITHIN, "LIST", "NDFs to fit, separated by commas", AT(fit.ndf),
 	 0, 0},
 	{"ndf", 0, KIND_NDFS, MODEL | BENCH | EXPORT, NOT_RECORDED, "NAME", "NDF of the model", AT(fit.ndf), 0, 0},

@@ -48,7 +48,7 @@ static inline bool criterion_equal(const struct criterion *a, const struct crite
 #define FIT_K_MAX 100.0
 #define FIT_FACTOR_MAX 1e6 /* kd, ks when unbounded: far beyond any material */
 
-enum { FIT_NDFS_MAX = 16 };
+enum { FIT_NDFS_MAX = 16, FIT_THREADS_MAX = 1024 };
 
 struct algorithm;
 
@@ -96,7 +96,8 @@ static inline bool fit_cancelled(const struct fit_options *options)
 	       (options->stop && __atomic_load_n(options->stop, __ATOMIC_RELAXED));
 }
 
-/* struct fit_options' defaults: STD, GGX and Beckmann, the paper's model and error, all processors. */
+/* struct fit_options' defaults: STD, GGX and Beckmann, the paper's model and error, as many threads as OpenMP
+ * would take, FIT_THREADS_MAX at most. */
 struct fit_options fit_options_default(void);
 
 #endif
