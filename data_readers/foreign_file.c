@@ -16,7 +16,6 @@ static const struct {
 	{"PK\x03\x04", 4, "is a zip archive: unpack it with unzip first"},
 	{"\0\0\0\x5a\0\0\0\x5a\0\0\0\xb4", 12, "is a MERL table with big-endian numbers: reverse their bytes first"},
 	{"\0\0\0\x5a\0\0\0\x5a\0\0\1\x68", 12, "is a MERL table with big-endian numbers: reverse their bytes first"},
-	{"tensor_file\0", 12, "is an RGL measurement (.bsdf): evaluate it at the entries of a MERL table first"},
 };
 
 const char *foreign_file(const void *head, size_t n)

@@ -348,7 +348,10 @@ enum status merl_write(const char *path, const struct measurement *measurement, 
 {
 	const struct header header = header_for(measurement->n_phi_d);
 	struct atomic_file file;
-	enum status status = atomic_file_open(&file, path, error);
+	enum status status = measurement_require_table(measurement, "a MERL file", error);
+
+	if (status == STATUS_OK)
+		status = atomic_file_open(&file, path, error);
 
 	if (status != STATUS_OK)
 		return status;

@@ -129,13 +129,21 @@ STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_weight(const stdfit_ndf *ndf, co
 						       double *weight, struct stdfit_error *error);
 
 /* stdfit_ndf_P22 - density of the slopes (p, q) along x and y; stdfit_ndf_P2 - of the slope q along azimuth phi;
- * stdfit_ndf_moment - integral of q^order P2, order even and >= 0: STDFIT_DOMAIN where it does not exist. */
+ * stdfit_ndf_moment - integral of q^order P2, order even and >= 0: STDFIT_DOMAIN where it does not exist;
+ * stdfit_ndf_excess_kurtosis - of P2, how heavy its tail is: 0 for beckmann, else STDFIT_DOMAIN unless gamma > 3. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_P22(const stdfit_ndf *ndf, double p, double q, double *density,
 						    struct stdfit_error *error);
 STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_P2(const stdfit_ndf *ndf, double phi, double q, double *density,
 						   struct stdfit_error *error);
 STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_moment(const stdfit_ndf *ndf, double phi, int order, double *moment,
 						       struct stdfit_error *error);
+STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_excess_kurtosis(const stdfit_ndf *ndf, double *kurtosis,
+								struct stdfit_error *error);
+
+/* stdfit_ndf_furnace - the share of light from everywhere that comes back after one reflection on facets that lose
+ * nothing; 1 for a lossless surface, to 1e-5. gaf as above. STDFIT_DOMAIN where sigma_x and sigma_y differ. */
+STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_furnace(const stdfit_ndf *ndf, const char *gaf, double *balance,
+							struct stdfit_error *error);
 
 /* ---- Models ---- */
 
@@ -161,9 +169,26 @@ STDFIT_MUST_CHECK enum stdfit_status stdfit_model_evaluate(const struct stdfit_m
 STDFIT_MUST_CHECK enum stdfit_status stdfit_model_albedo(const struct stdfit_model *model, const stdfit_ndf *ndf,
 							 double cos_i, double albedo[3], struct stdfit_error *error);
 
+/* stdfit_model_albedo_max - the largest albedo of any direction, to 1e-5 for kd, ks up to 1, and at *theta_i, radians, that
+ * direction. More than 1 is more light than comes in. STDFIT_DOMAIN as above. */
+STDFIT_MUST_CHECK enum stdfit_status stdfit_model_albedo_max(const struct stdfit_model *model, const stdfit_ndf *ndf,
+							     double albedo[3], double *theta_i,
+							     struct stdfit_error *error);
+
 /* stdfit_fresnel - reflectance F in [0, 1] at cos_d in [0, 1], ranges of n and k as above. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_fresnel(const char *fresnel, double cos_d, double n, double k, double *F,
 						    struct stdfit_error *error);
+
+/* ---- Half and difference angles ---- */
+
+/* stdfit_angles_to_directions - wi and wo of n triples theta_h, theta_d, phi_d, with h in the xz plane; z <= 0 where a
+ * direction lies below the horizon. Given: theta_h, theta_d in [0, pi/2], phi_d in [-2 pi, 2 pi].
+ * stdfit_angles_from_directions - the reverse, for any azimuth of the pair: theta_h in [0, pi], theta_d in [0, pi/2],
+ * phi_d in [0, 2 pi); an angle without meaning is 0, as phi_d for wi = wo and theta_h for wi = -wo. */
+STDFIT_MUST_CHECK enum stdfit_status stdfit_angles_to_directions(size_t n, const double *angles, double *wi, double *wo,
+								 struct stdfit_error *error);
+STDFIT_MUST_CHECK enum stdfit_status stdfit_angles_from_directions(size_t n, const double *wi, const double *wo,
+								   double *angles, struct stdfit_error *error);
 
 /* ---- Measurements ---- */
 
@@ -233,7 +258,7 @@ struct stdfit_options {
 	void (*trace)(void *data, const struct stdfit_step *step);
 	void *trace_data;
 	/* The fit stops soon after this has become other than 0; NULL: never. May be set by a signal handler, another
-	 * thread or the trace. */
+	 * thread or the trace, which runs beside threads that read it: those two store it atomically. */
 	const volatile int *cancel;
 };
 

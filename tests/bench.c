@@ -79,7 +79,7 @@ static float stream_all(const struct sample_set *t, const float *s, bool geometr
 static double pass_all(const struct objective *o, const struct kernel_g1 *g1, bool model, double tau, int threads)
 {
 	const struct sample_set *t = o->table;
-	const struct kernel_evaluation look = {0.1, 0.4, tau, 1e-3};
+	const struct kernel_evaluation evaluation = {0.1, 0.4, tau, 1e-3};
 	double sum = 0;
 
 #pragma omp parallel for num_threads(threads) schedule(static) reduction(+ : sum)
@@ -92,7 +92,7 @@ static double pass_all(const struct objective *o, const struct kernel_g1 *g1, bo
 			o->kernel->lobe(KERNEL_SEPARABLE, g1, o->row, &slots, o->s + at);
 		for (int c = 0; c < MERL_CHANNELS; c++) {
 			o->kernel->pass(b < t->n_pair_blocks ? 2 : 1, sample_set_value(t, b, c), t->w + at, o->s + at,
-					&look, &sums);
+					&evaluation, &sums);
 			sum += sums.error;
 		}
 	}

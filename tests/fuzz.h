@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 int fuzz_merl(const uint8_t *data, size_t size);         /* the MERL reader */
+int fuzz_rgl(const uint8_t *data, size_t size);          /* that of RGL files */
 int fuzz_table(const uint8_t *data, size_t size);        /* result tables: eval --from, compare, --resume */
 int fuzz_command_line(const uint8_t *data, size_t size); /* arguments */
 

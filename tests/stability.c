@@ -34,7 +34,7 @@ struct row {
 enum { ROWS_MAX = 256 };
 static struct row rows[ROWS_MAX];
 static int n_rows;
-static char place[160]; /* the parameters at hand */
+static char at_hand[160]; /* the parameters at hand */
 
 static struct row *row_of(const char *quantity, const char *of)
 {
@@ -50,18 +50,18 @@ static struct row *row_of(const char *quantity, const char *of)
 	return row;
 }
 
-__attribute__((format(printf, 1, 2))) static void set_place(const char *format, ...)
+__attribute__((format(printf, 1, 2))) static void set_case(const char *format, ...)
 {
 	va_list args;
 	va_start(args, format);
-	vsnprintf(place, sizeof(place), format, args);
+	vsnprintf(at_hand, sizeof(at_hand), format, args);
 	va_end(args);
 }
 
 static void finding(struct row *row, long *count, const char *what, double value)
 {
 	if (row->what[0] == '\0')
-		snprintf(row->what, sizeof(row->what), "%s %.17g: %s", what, value, place);
+		snprintf(row->what, sizeof(row->what), "%s %.17g: %s", what, value, at_hand);
 	(*count)++;
 }
 
@@ -106,7 +106,7 @@ static void check(struct row *row, double value, int flags, struct expected expe
 	if (error * row->allowed >= row->worst * expected.allowed) {
 		row->worst = error;
 		row->allowed = expected.allowed;
-		snprintf(row->where, sizeof(row->where), "%s", place);
+		snprintf(row->where, sizeof(row->where), "%s", at_hand);
 	}
 }
 
@@ -220,7 +220,7 @@ static double allowed_G1(const struct subject *s)
 
 static void at_direction(const struct subject *s, const char *name, struct vec3 w)
 {
-	set_place("sigma %g gamma %.17g %s (%g, %g, %g)", s->ndf.sigma_x, s->ndf.gamma, name, w.x, w.y, w.z);
+	set_case("sigma %g gamma %.17g %s (%g, %g, %g)", s->ndf.sigma_x, s->ndf.gamma, name, w.x, w.y, w.z);
 }
 
 static void sweep_D(const struct subject *s)
@@ -321,7 +321,7 @@ static void sweep_P2(const struct subject *s)
 		const long double sP2 = K * expl(power) / sqrtl((long double)s->a);
 		double value;
 		int flags;
-		set_place("sigma %g gamma %.17g slope %g", ndf->sigma_x, ndf->gamma, q);
+		set_case("sigma %g gamma %.17g slope %g", ndf->sigma_x, ndf->gamma, q);
 		OBSERVE(value, flags, ndf_P2(ndf, 0.0, q));
 		check(row, value, flags,
 		      (struct expected){0.0, INFINITY, false, sP2 / (long double)ndf->sigma_x,
@@ -335,7 +335,7 @@ static void sweep_P2(const struct subject *s)
 		double value = 0.0;
 		int flags;
 		enum status status;
-		set_place("sigma %g gamma %.17g order %d", ndf->sigma_x, ndf->gamma, order);
+		set_case("sigma %g gamma %.17g order %d", ndf->sigma_x, ndf->gamma, order);
 		OBSERVE(status, flags, ndf_moment(ndf, 0.3, order, &value));
 		if (status == STATUS_OK)
 			check(moments, value, flags, (struct expected){0.0, INFINITY, false, NAN, 1.0});
@@ -362,15 +362,15 @@ static void sweep_sample(const struct subject *s)
 		for (int j = 0; j < COUNT(uniform); j++) {
 			struct vec3 m;
 			int flags;
-			set_place("sigma %g gamma %.17g u %g %g", s->ndf.sigma_x, s->ndf.gamma, uniform[j], uniform[i]);
+			set_case("sigma %g gamma %.17g u %g %g", s->ndf.sigma_x, s->ndf.gamma, uniform[j], uniform[i]);
 			OBSERVE(m, flags, ndf_sample(&s->ndf, uniform[j], uniform[i]));
 			const double slope = hypot(m.x, m.y) / m.z;
-			const bool told = m.z > 1e-6; /* as ndf.h has it */
+			const bool known = m.z > 1e-6; /* as ndf.h has it */
 			check(row, m.z, flags, (struct expected){0.0, 1.0, false, NAN, 1.0});
 			check(row, vec3_length(m), 0,
 			      (struct expected){1.0 - 4.0 * eps, 1.0 + 4.0 * eps, false, NAN, 1.0});
-			check(row, told ? slope : 0.0, 0,
-			      (struct expected){0.0, INFINITY, false, told ? reference_slope(s, uniform[i]) : NAN,
+			check(row, known ? slope : 0.0, 0,
+			      (struct expected){0.0, INFINITY, false, known ? reference_slope(s, uniform[i]) : NAN,
 						1e-14});
 			check_order(row, -before, -slope, 1e-14 * before);
 			if (j == COUNT(uniform) - 1)
@@ -395,8 +395,8 @@ static void sweep_visible(const struct subject *s)
 					: NAN;
 			double value;
 			int flags;
-			set_place("sigma %g gamma %.17g wi (%g, 0, %g) m (%g, %g, %g)", s->ndf.sigma_x, s->ndf.gamma,
-				  wi.x, wi.z, m.x, m.y, m.z);
+			set_case("sigma %g gamma %.17g wi (%g, 0, %g) m (%g, %g, %g)", s->ndf.sigma_x, s->ndf.gamma,
+				 wi.x, wi.z, m.x, m.y, m.z);
 			trapping = wi.z < 1e-270 ? FE_INVALID : TRAPS;
 			OBSERVE(value, flags, vndf_pdf(&s->ndf, wi, m));
 			check(pdf_row, value, wi.z < 1e-270 ? flags & FE_INVALID : flags,
@@ -411,8 +411,8 @@ static void sweep_visible(const struct subject *s)
 			const double u1 = uniform[j % COUNT(uniform)], u2 = uniform[j / COUNT(uniform)];
 			struct vec3 m;
 			int flags;
-			set_place("sigma %g gamma %.17g wi (%g, 0, %g) u %g %g", s->ndf.sigma_x, s->ndf.gamma, wi.x,
-				  wi.z, u1, u2);
+			set_case("sigma %g gamma %.17g wi (%g, 0, %g) u %g %g", s->ndf.sigma_x, s->ndf.gamma, wi.x,
+				 wi.z, u1, u2);
 			OBSERVE(m, flags, vndf_sample(&s->ndf, wi, u1, u2));
 			check(sample_row, m.z, flags, (struct expected){DBL_MIN, 1.0, false, NAN, 1.0});
 			check(sample_row, vec3_length(m), 0,
@@ -487,21 +487,21 @@ static void sweep_pairs(const struct subject *s)
 			const long double over = above && !armed ? reference_G_over((enum gaf)gaf, s, i, j, sum) : NAN;
 			const long double length = sqrtl(sum.x * sum.x + sum.y * sum.y + sum.z * sum.z);
 			const struct vec3_long h = {sum.x / length, sum.y / length, sum.z / length};
-			const bool told = above && !denormal && h.z > 1e-90L;
+			const bool known = above && !denormal && h.z > 1e-90L;
 			double value, f[3];
 			int flags;
-			set_place("sigma %g gamma %.17g wi (%g, 0, %g) wo (%g, %g, %g)", s->ndf.sigma_x, s->ndf.gamma,
-				  wi.x, wi.z, wo.x, wo.y, wo.z);
+			set_case("sigma %g gamma %.17g wi (%g, 0, %g) wo (%g, %g, %g)", s->ndf.sigma_x, s->ndf.gamma,
+				 wi.x, wi.z, wo.x, wo.y, wo.z);
 			trapping = denormal ? FE_INVALID : TRAPS;
 			OBSERVE(value, flags, gaf_G((enum gaf)gaf, &s->ndf, wi, wo));
 			check(G_row, value, flags & trapping,
 			      (struct expected){0.0, 1.0, false,
-						told    ? over * (long double)wi.z * (long double)wo.z
+						known   ? over * (long double)wi.z * (long double)wo.z
 						: above ? NAN
 							: 0.0L,
 						2e-15 + 2.0 * allowed_G1(s)});
 			OBSERVE(f[0], flags, (cook_torrance_f(&model, wi, wo, f), f[0]));
-			const long double lobe = told    ? dielectric(length / 2, 1.5L) * reference_D(s, h) * over / 4
+			const long double lobe = known   ? dielectric(length / 2, 1.5L) * reference_D(s, h) * over / 4
 						 : above ? NAN
 							 : 0.0L;
 			check(f_row, f[0], flags & trapping,
@@ -534,8 +534,8 @@ static void sweep_energy(const struct subject *s)
 		const struct cook_torrance mirror = {.ndf = s->ndf, .gaf = (enum gaf)gaf, .fresnel = FRESNEL_NONE};
 		for (int i = 0; i < COUNT(cos_i); i++) {
 			double albedo = NAN;
-			set_place("sigma %g gamma %.17g %s cos_i %g", s->ndf.sigma_x, s->ndf.gamma,
-				  gaf_name((enum gaf)gaf), cos_i[i]);
+			set_case("sigma %g gamma %.17g %s cos_i %g", s->ndf.sigma_x, s->ndf.gamma,
+				 gaf_name((enum gaf)gaf), cos_i[i]);
 			if (energy_lobe(&mirror, cos_i[i], &albedo) == STATUS_OK)
 				check(row_of("albedo", s->name), albedo, 0,
 				      (struct expected){0.0, 1.0 + 1e-7, false, NAN, 1.0});
@@ -641,7 +641,7 @@ static void sweep_fresnel(void)
 			const double c = cosines[i], n = index[j];
 			double value;
 			int flags;
-			set_place("cos_d %.17g n %.17g", c, n);
+			set_case("cos_d %.17g n %.17g", c, n);
 			/* Close to the critical angle the value itself is as ill-conditioned as a square root at 0. */
 			const long double g2 = (long double)n * (long double)n - 1 + (long double)c * (long double)c;
 			const double critical = n < 1.0 ? (double)(1 / sqrtl(fabsl(g2) + 1e-30L)) : 1.0;
@@ -654,7 +654,7 @@ static void sweep_fresnel(void)
 			check(row_of("Fresnel", "schlick"), value, flags,
 			      (struct expected){0.0, 1.0, false, F0 + (1 - F0) * powl(1 - (long double)c, 5), 2e-15});
 			for (int k = 0; k < COUNT(absorption); k++) {
-				set_place("cos_d %.17g n %.17g k %g", c, n, absorption[k]);
+				set_case("cos_d %.17g n %.17g k %g", c, n, absorption[k]);
 				OBSERVE(value, flags, fresnel_F(FRESNEL_CONDUCTOR, c, n, absorption[k]));
 				check(row_of("Fresnel", "conductor"), value, flags,
 				      (struct expected){
@@ -675,7 +675,7 @@ static void sweep_one_ellipsoid(const struct ellipsoid *e, const char *name, con
 			const struct vec3 v = turned(w[i], phi);
 			double value;
 			int flags;
-			set_place("%s w (%g, %g, %g)", matrix, v.x, v.y, v.z);
+			set_case("%s w (%g, %g, %g)", matrix, v.x, v.y, v.z);
 			OBSERVE(value, flags, ellipsoid_D(e, v));
 			check(row_of("D", name), value, flags, (struct expected){0.0, INFINITY, false, NAN, 1.0});
 			OBSERVE(value, flags, ellipsoid_G1(e, v));
@@ -725,7 +725,7 @@ static void sweep_table(const char *name, const struct pwl *pwl)
 	for (int i = 0; i < EXTREME_DIRECTIONS; i++) {
 		double value;
 		int flags;
-		set_place("%s w (%g, 0, %g)", name, w[i].x, w[i].z);
+		set_case("%s w (%g, 0, %g)", name, w[i].x, w[i].z);
 		OBSERVE(value, flags, ndf_D(&ndf, w[i]));
 		check(row_of("D", "pl"), value, flags, (struct expected){0.0, INFINITY, false, NAN, 1.0});
 		trapping = w[i].z < 1e-250 ? FE_INVALID : TRAPS;
@@ -741,7 +741,7 @@ static void sweep_table(const char *name, const struct pwl *pwl)
 	for (int j = 0; j < COUNT(uniform) * COUNT(uniform); j++) {
 		struct vec3 m;
 		int flags;
-		set_place("%s u %g %g", name, uniform[j % COUNT(uniform)], uniform[j / COUNT(uniform)]);
+		set_case("%s u %g %g", name, uniform[j % COUNT(uniform)], uniform[j / COUNT(uniform)]);
 		OBSERVE(m, flags, ndf_sample(&ndf, uniform[j % COUNT(uniform)], uniform[j / COUNT(uniform)]));
 		check(row_of("sample", "pl"), m.z, flags, (struct expected){0.0, 1.0, false, NAN, 1.0});
 	}
@@ -834,14 +834,14 @@ static void sweep_lobe(struct objective *o, const struct geometry *g, const stru
 			const int i = slots.row[n] / MERL_THETA_D, j = slots.row[n] % MERL_THETA_D, k = g->k[at + n];
 			struct vec3 wi, wo;
 			entries_dirs(&g->entries, i, j, k, &wi, &wo);
-			/* Smaller ones than a float's D has digits for are told from 0 only. */
+			/* Smaller ones than a float's D has digits for are known from 0 only. */
 			const double f =
 				cook_torrance_lobe(model, wi, wo) * weight_at(g->criterion.weight, i, j, wi.z, wo.z);
-			const bool told = o->row[slots.row[n]] > 1e-36f && f > 1e-36;
-			set_place("%s sigma %g gamma %g entry %d %d %d", ndf_name(model->ndf.class), model->ndf.sigma_x,
-				  model->ndf.gamma, i, j, k);
+			const bool known = o->row[slots.row[n]] > 1e-36f && f > 1e-36;
+			set_case("%s sigma %g gamma %g entry %d %d %d", ndf_name(model->ndf.class), model->ndf.sigma_x,
+				 model->ndf.gamma, i, j, k);
 			check(row, (double)plain[n], 0,
-			      (struct expected){0.0, INFINITY, false, told ? (long double)f : NAN, allowed});
+			      (struct expected){0.0, INFINITY, false, known ? (long double)f : NAN, allowed});
 			check(alike, (double)s[n], 0,
 			      (struct expected){(double)plain[n], (double)plain[n], false, NAN, 0.0});
 		}
@@ -888,7 +888,7 @@ static void sweep_scales(const struct geometry *g, const struct fit_options *opt
 		for (size_t e = 0; e < measurement_count(measurement); e++)
 			for (int c = 0; c < MERL_CHANNELS; c++)
 				measurement->value[c][e] = scale[i];
-		set_place("all %g, weight %s", (double)scale[i], weight_name(options->criterion.weight));
+		set_case("all %g, weight %s", (double)scale[i], weight_name(options->criterion.weight));
 		if (sample_set_init(&table, g, measurement, 1) != STATUS_OK) {
 			row_of("float error", "E")->refused++;
 			continue;
@@ -1000,7 +1000,7 @@ static void on_trap(int signal)
 {
 	static const char text[] = "FOUND a trap at: ";
 	(void)signal;
-	if (write(STDOUT_FILENO, text, sizeof(text) - 1) < 0 || write(STDOUT_FILENO, place, strlen(place)) < 0 ||
+	if (write(STDOUT_FILENO, text, sizeof(text) - 1) < 0 || write(STDOUT_FILENO, at_hand, strlen(at_hand)) < 0 ||
 	    write(STDOUT_FILENO, "\n", 1) < 0)
 		_exit(3);
 	_exit(1);

@@ -53,7 +53,7 @@ static enum status run(const struct fit_options *options, struct found *found)
 	return algorithm_run(&table, options, options->ndf[0], found);
 }
 
-static void names(void **state)
+static void names_and_algorithms_are_inverse(void **state)
 {
 	const struct algorithm *found = algorithm_at(1);
 
@@ -85,17 +85,17 @@ static void check_trace(const struct trace *trace, const char *label)
 	}
 }
 
-static void check_found(const struct found *f, const struct trace *trace, double most_factor, const char *label)
+static void check_found(const struct found *f, const struct trace *trace, double largest_factor, const char *label)
 {
-	/* The last look is one with a finer masking. */
+	/* The last evaluation is one with a finer masking. */
 	check_rel(f->linear.error, trace->point[trace->n - 1].error, 1e-4, label);
 	check_between(f->linear.error, 0, trace->point[0].error * (1 + 1e-4), label);
 	check_between(f->linear.lower_bound, 0, f->linear.error + 1e-7, label);
 	check_between(f->shape.sigma, FIT_SIGMA_MIN, FIT_SIGMA_MAX, label);
 	check_between(f->shape.ior, FIT_IOR_MIN, FIT_IOR_MAX, label);
 	for (int c = 0; c < 3; c++) {
-		check_between(f->linear.kd[c], 0, most_factor, label);
-		check_between(f->linear.ks[c], 0, most_factor, label);
+		check_between(f->linear.kd[c], 0, largest_factor, label);
+		check_between(f->linear.ks[c], 0, largest_factor, label);
 	}
 	check_between(f->starts_agreeing, 1, f->starts, label);
 	check_between((double)f->evaluations, (double)trace->point[trace->n - 1].evaluations, 1e9, label);
@@ -141,7 +141,7 @@ static void a_fit_takes_the_algorithm(void **state)
 }
 
 /* The time decides where a search ends, nothing but the seed how it gets there. */
-static void the_way_is_the_same(void **state)
+static void the_path_depends_on_the_seed_alone(void **state)
 {
 	(void)state;
 	for (int i = 1; i < ALGORITHM_COUNT; i++) {
@@ -164,7 +164,7 @@ static void the_way_is_the_same(void **state)
 }
 
 /* Fewer and more parameters: one to search, none, all of them without a bound; kd and ks in bounds of their own. */
-static void any_number_of_parameters(void **state)
+static void each_takes_any_number_of_parameters(void **state)
 {
 	(void)state;
 	for (int i = 1; i < ALGORITHM_COUNT; i++) {
@@ -290,13 +290,13 @@ static void a_jump_to_another_lobe_ends_at_its_minimum(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(names),
+		cmocka_unit_test(names_and_algorithms_are_inverse),
 		cmocka_unit_test(the_error_of_a_point),
 		cmocka_unit_test(a_jump_to_another_lobe_ends_at_its_minimum),
 		cmocka_unit_test(each_ends_with_the_best_it_saw),
 		cmocka_unit_test(a_fit_takes_the_algorithm),
-		cmocka_unit_test(the_way_is_the_same),
-		cmocka_unit_test(any_number_of_parameters),
+		cmocka_unit_test(the_path_depends_on_the_seed_alone),
+		cmocka_unit_test(each_takes_any_number_of_parameters),
 		cmocka_unit_test(each_stops_when_cancelled),
 	};
 

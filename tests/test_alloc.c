@@ -628,7 +628,7 @@ static void make_files(void)
 	expect_code(0);
 }
 
-static void light(void **state)
+static void a_failed_allocation_is_an_error_in_short_commands(void **state)
 {
 	(void)state;
 	if (!OWN_ALLOCATOR)
@@ -639,7 +639,7 @@ static void light(void **state)
 			check_scenario(&scenarios[i]);
 }
 
-static void heavy(void **state)
+static void a_failed_allocation_is_an_error_in_long_commands(void **state)
 {
 	(void)state;
 	if (!OWN_ALLOCATOR)
@@ -673,8 +673,8 @@ static int set_up(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(light),
-		cmocka_unit_test(heavy),
+		cmocka_unit_test(a_failed_allocation_is_an_error_in_short_commands),
+		cmocka_unit_test(a_failed_allocation_is_an_error_in_long_commands),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);
 }

@@ -133,7 +133,7 @@ static void a_bench_has_a_row_an_algorithm(void **state)
 		assert_string_equal(row[0], "m");
 		assert_string_equal(row[1], "std");
 		assert_string_equal(row[2], names[i]);
-		/* Only looks within the time; none is above the one before. */
+		/* Only evaluations within the time; none is above the one before. */
 		for (int c = 3; c < ERROR; c++) {
 			if (!*row[c])
 				continue;
@@ -285,7 +285,7 @@ static void a_fit_records_its_algorithm(void **state)
 	csv_table_free(&rows);
 }
 
-static void wrong_usage(void **state)
+static void wrong_usage_is_refused(void **state)
 {
 	static const struct {
 		const char *arguments, *part;
@@ -349,7 +349,7 @@ int main(void)
 		cmocka_unit_test(a_bench_of_forms_has_a_row_a_form),
 		cmocka_unit_test(a_form_without_the_gamma_has_an_empty_row),
 		cmocka_unit_test(a_fit_records_its_algorithm),
-		cmocka_unit_test(wrong_usage),
+		cmocka_unit_test(wrong_usage_is_refused),
 		cmocka_unit_test(a_bench_can_be_interrupted),
 	};
 

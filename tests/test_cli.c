@@ -61,7 +61,7 @@ static int set_up(void **state)
 	return last.code;
 }
 
-static void help_and_version(void **state)
+static void help_and_version_are_printed(void **state)
 {
 	(void)state;
 	static const char *const commands[] = {"fit", "compare", "eval", "info", "synth"};
@@ -92,7 +92,7 @@ static void help_and_version(void **state)
 	expect_out("xxhash");
 }
 
-static void wrong_usage(void **state)
+static void wrong_usage_is_refused(void **state)
 {
 	(void)state;
 	static const struct {
@@ -183,7 +183,7 @@ static void expect_bad_file(const char *path, const char *message)
 	csv_table_free(&table);
 }
 
-static void bad_files(void **state)
+static void bad_files_are_refused(void **state)
 {
 	(void)state;
 	expect_bad_file("bad/missing.binary", "No such file or directory");
@@ -252,7 +252,7 @@ static void nan_and_inf_are_masked_and_counted(void **state)
 	expect_out("\"above_horizon\": 1096216");
 }
 
-static void a_fit_tells_what_it_did(void **state)
+static void a_fit_reports_what_it_did(void **state)
 {
 	(void)state;
 	stdfit("--max-theta 20 a.binary --sigma 0.2 --ior 1.5 --ndf ggx,beckmann -o one.csv");
@@ -304,7 +304,7 @@ static void a_fit_tells_what_it_did(void **state)
 	expect_out("\"error_none\": ");
 }
 
-static void json_and_tables(void **state)
+static void fits_print_JSON_and_tables(void **state)
 {
 	(void)state;
 	stdfit("a.binary " CHEAP " --json");
@@ -343,7 +343,7 @@ static void a_batch_survives_a_bad_file(void **state)
 	csv_table_free(&table);
 }
 
-static void directories_below(void **state)
+static void directories_below_are_searched_if_asked(void **state)
 {
 	(void)state;
 	shell("mkdir -p tree/b/c tree/.hidden; ln a.binary tree/b/c/deep.binary; ln a.binary tree/.hidden/x.binary;"
@@ -359,7 +359,7 @@ static void directories_below(void **state)
 	stdfit("tree/b " CHEAP);
 	expect_error(1, "-r takes those in the directories below");
 	shell("mkdir -p hollow/x; exec \"$STDFIT\" hollow");
-	expect_error(1, "no *.binary in this directory\n");
+	expect_error(1, "no measurement in this directory\n");
 	stdfit("upper --ndf ggx --no-specular");
 	expect_code(0);
 	table = read_table("stdout");
@@ -398,7 +398,7 @@ static void threads_change_nothing(void **state)
 	free(first);
 }
 
-static void kill_and_resume(void **state)
+static void a_killed_batch_resumes_to_the_same_table(void **state)
 {
 	(void)state;
 	stdfit("good " CHEAP " -o whole.csv");
@@ -481,7 +481,7 @@ static void resume_redoes_what_differs(void **state)
 }
 
 /* A cell that a model needs is missing, or holds what no model has: no number is made up for it. */
-static void rows_that_are_no_models(void **state)
+static void rows_that_are_no_models_are_refused(void **state)
 {
 	static const struct {
 		int column;
@@ -506,7 +506,7 @@ static void rows_that_are_no_models(void **state)
 }
 
 /* A table without the latest columns gives models, but takes no rows. */
-static void older_tables(void **state)
+static void older_tables_are_taken(void **state)
 {
 	(void)state;
 	stdfit("a.binary " CHEAP " -o newer.csv");
@@ -589,7 +589,7 @@ static void an_interrupt_keeps_what_is_done(void **state)
 	interrupt(SIGTERM);
 }
 
-static void outputs_that_cannot_be_written(void **state)
+static void outputs_that_cannot_be_written_are_reported(void **state)
 {
 	(void)state;
 	stdfit("a.binary " CHEAP " -o /nowhere/x.csv");
@@ -627,7 +627,7 @@ static void outputs_that_cannot_be_written(void **state)
 	assert_int_equal(access("limit.binary", F_OK), -1);
 }
 
-static void a_reader_that_is_gone(void **state)
+static void a_reader_that_is_gone_ends_it_quietly(void **state)
 {
 	(void)state;
 	int ends[2];
@@ -648,7 +648,7 @@ static void a_reader_that_is_gone(void **state)
 	free(err);
 }
 
-static void compare_tables(void **state)
+static void compare_summarises_tables(void **state)
 {
 	(void)state;
 	write_text("four.csv", "ndf,material,error,options,extra\n"
@@ -823,24 +823,24 @@ static void noise_follows_the_seed(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(help_and_version),
-		cmocka_unit_test(wrong_usage),
-		cmocka_unit_test(bad_files),
+		cmocka_unit_test(help_and_version_are_printed),
+		cmocka_unit_test(wrong_usage_is_refused),
+		cmocka_unit_test(bad_files_are_refused),
 		cmocka_unit_test(nan_and_inf_are_masked_and_counted),
-		cmocka_unit_test(a_fit_tells_what_it_did),
-		cmocka_unit_test(json_and_tables),
+		cmocka_unit_test(a_fit_reports_what_it_did),
+		cmocka_unit_test(fits_print_JSON_and_tables),
 		cmocka_unit_test(a_batch_survives_a_bad_file),
-		cmocka_unit_test(directories_below),
+		cmocka_unit_test(directories_below_are_searched_if_asked),
 		cmocka_unit_test(threads_change_nothing),
-		cmocka_unit_test(kill_and_resume),
+		cmocka_unit_test(a_killed_batch_resumes_to_the_same_table),
 		cmocka_unit_test(resume_redoes_what_differs),
-		cmocka_unit_test(older_tables),
-		cmocka_unit_test(rows_that_are_no_models),
+		cmocka_unit_test(older_tables_are_taken),
+		cmocka_unit_test(rows_that_are_no_models_are_refused),
 		cmocka_unit_test(the_energy_is_accounted_for),
 		cmocka_unit_test(an_interrupt_keeps_what_is_done),
-		cmocka_unit_test(outputs_that_cannot_be_written),
-		cmocka_unit_test(a_reader_that_is_gone),
-		cmocka_unit_test(compare_tables),
+		cmocka_unit_test(outputs_that_cannot_be_written_are_reported),
+		cmocka_unit_test(a_reader_that_is_gone_ends_it_quietly),
+		cmocka_unit_test(compare_summarises_tables),
 		cmocka_unit_test(within_takes_the_simplest),
 		cmocka_unit_test(faults_of_the_data_are_told),
 		cmocka_unit_test(small_stacks_are_made_larger_or_told),

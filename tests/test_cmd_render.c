@@ -42,7 +42,7 @@ static double number_at(int column)
 	return strtod(at, NULL);
 }
 
-static void a_material_beside_its_own_model(void **state)
+static void a_material_beside_its_own_model_shows_no_difference(void **state)
 {
 	(void)state;
 	stdfit("render m.binary " MODEL " " QUICK " -o own.pfm");
@@ -90,7 +90,7 @@ static void the_same_bits_for_seed_and_threads(void **state)
 	image_free(&bright);
 }
 
-static void png_or_what_stands_for_it(void **state)
+static void the_extension_decides_the_format(void **state)
 {
 	(void)state;
 	stdfit("render m.binary " MODEL " " QUICK " -o picture.png");
@@ -146,7 +146,7 @@ static void fits_and_tables_make_sheets(void **state)
 	assert_null(strstr(last.out, "delta_e"));
 }
 
-static void light_of_several_kinds(void **state)
+static void light_comes_from_names_maps_and_points(void **state)
 {
 	(void)state;
 	/* A grey map of light: Lambert alone stays below it. */
@@ -169,7 +169,7 @@ static void light_of_several_kinds(void **state)
 	expect_code(0);
 }
 
-static void what_is_refused(void **state)
+static void wrong_usage_is_refused(void **state)
 {
 	(void)state;
 	shell("printf 'material,value\\nm,1\\n' >other.csv; printf 'PF\\n3 "
@@ -268,7 +268,7 @@ static void files_are_those_that_were_fitted(void **state)
 	expect_error(1, "cannot render 'b': the table has no path of its file");
 }
 
-static void interrupted(void **state)
+static void an_interrupt_leaves_no_picture(void **state)
 {
 	(void)state;
 	const pid_t pid =
@@ -293,15 +293,15 @@ static int set_up(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(a_material_beside_its_own_model),
+		cmocka_unit_test(a_material_beside_its_own_model_shows_no_difference),
 		cmocka_unit_test(the_same_bits_for_seed_and_threads),
-		cmocka_unit_test(png_or_what_stands_for_it),
+		cmocka_unit_test(the_extension_decides_the_format),
 		cmocka_unit_test(fits_and_tables_make_sheets),
-		cmocka_unit_test(light_of_several_kinds),
-		cmocka_unit_test(what_is_refused),
+		cmocka_unit_test(light_comes_from_names_maps_and_points),
+		cmocka_unit_test(wrong_usage_is_refused),
 		cmocka_unit_test(one_bad_file_costs_only_itself),
 		cmocka_unit_test(files_are_those_that_were_fitted),
-		cmocka_unit_test(interrupted),
+		cmocka_unit_test(an_interrupt_leaves_no_picture),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);
 }

@@ -52,19 +52,25 @@ static void run_corpus(const char *name, int (*target)(const uint8_t *, size_t))
 	assert_true(n > 2);
 }
 
-static void merl(void **state)
+static void merl_reader_keeps_its_promises(void **state)
 {
 	(void)state;
 	run_corpus("merl", fuzz_merl);
 }
 
-static void table(void **state)
+static void rgl_reader_keeps_its_promises(void **state)
+{
+	(void)state;
+	run_corpus("rgl", fuzz_rgl);
+}
+
+static void result_tables_keep_their_promises(void **state)
 {
 	(void)state;
 	run_corpus("table", fuzz_table);
 }
 
-static void command_line(void **state)
+static void command_lines_keep_their_promises(void **state)
 {
 	(void)state;
 	run_corpus("command_line", fuzz_command_line);
@@ -93,9 +99,10 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(json_check_knows_json),
-		cmocka_unit_test(merl),
-		cmocka_unit_test(table),
-		cmocka_unit_test(command_line),
+		cmocka_unit_test(merl_reader_keeps_its_promises),
+		cmocka_unit_test(rgl_reader_keeps_its_promises),
+		cmocka_unit_test(result_tables_keep_their_promises),
+		cmocka_unit_test(command_lines_keep_their_promises),
 	};
 	signal(SIGABRT, on_abort); /* returns, and then it ends all the same */
 	alarm(120);                /* a hang ends */

@@ -84,7 +84,7 @@ static void numbers_are_short(void **state)
 	assert_string_equal(csv_number(text, NAN), "");
 }
 
-static void what_is_no_number(void **state)
+static void what_is_no_number_is_refused(void **state)
 {
 	(void)state;
 	static const char *const bad[] = {" 1",   "1 ",    "1,5",    "0x10",  "nan",      "NaN", "infinity",
@@ -192,7 +192,7 @@ static void zero_bytes_are_refused(void **state)
 	assert_non_null(strstr(error.text, "zero byte"));
 }
 
-static void missing_files_and_directories(void **state)
+static void missing_files_and_directories_are_refused(void **state)
 {
 	(void)state;
 	struct csv_table table = csv_table_make(columns, COLUMNS);
@@ -252,12 +252,12 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(numbers_read_back),
 		cmocka_unit_test(numbers_are_short),
-		cmocka_unit_test(what_is_no_number),
+		cmocka_unit_test(what_is_no_number_is_refused),
 		cmocka_unit_test(cells_come_back),
 		cmocka_unit_test(columns_are_found_by_name),
 		cmocka_unit_test(malformed_files_are_refused),
 		cmocka_unit_test(zero_bytes_are_refused),
-		cmocka_unit_test(missing_files_and_directories),
+		cmocka_unit_test(missing_files_and_directories_are_refused),
 		cmocka_unit_test(every_cut_keeps_the_complete_lines),
 		cmocka_unit_test(damage_never_crashes),
 	};

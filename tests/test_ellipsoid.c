@@ -23,7 +23,7 @@ static struct ellipsoid from_angles(double alpha_x, double alpha_y, double x_deg
 	return ellipsoid;
 }
 
-static void golden_values(void **state)
+static void values_match_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden = golden_open("tests/golden/ellipsoid.csv",
@@ -45,7 +45,7 @@ static void golden_values(void **state)
 	assert_in_range(hidden, 1, golden.rows);
 }
 
-static void golden_samples(void **state)
+static void samples_match_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden =
@@ -111,7 +111,7 @@ static void scale_and_rotation_of_A_change_nothing(void **state)
 }
 
 /* A needle tilted away from u: |A u| |A n| and (A u).(A n) all but cancel. */
-static void tilted_needle(void **state)
+static void a_tilted_needle_loses_no_digits(void **state)
 {
 	(void)state;
 	const struct ellipsoid e = from_angles(1e-5, 3e-5, 0.0, 60.0, 0.0);
@@ -330,11 +330,11 @@ static void arguments_outside_the_domain_are_refused(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(golden_values),
-		cmocka_unit_test(golden_samples),
+		cmocka_unit_test(values_match_golden_rows),
+		cmocka_unit_test(samples_match_golden_rows),
 		cmocka_unit_test(unrotated_is_anisotropic_ggx),
 		cmocka_unit_test(scale_and_rotation_of_A_change_nothing),
-		cmocka_unit_test(tilted_needle),
+		cmocka_unit_test(a_tilted_needle_loses_no_digits),
 		cmocka_unit_test(D_and_visible_normals_integrate_to_their_areas),
 		cmocka_unit_test(samples_follow_pdf),
 		cmocka_unit_test(weights_give_the_albedo),

@@ -18,7 +18,7 @@ static double lobe(const struct cook_torrance *model, double cos_i)
 	return albedo;
 }
 
-static void golden_balance(void **state)
+static void albedo_matches_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden = golden_open("tests/golden/energy_balance.csv",
@@ -55,7 +55,7 @@ static void check_sampled(const struct cook_torrance *model, double theta_i, uin
 	check_mean(mean, deviation, lobe(model, wi.z), ndf_name(model->ndf.class));
 }
 
-static void sampled(void **state)
+static void albedo_is_the_mean_of_sampled_weights(void **state)
 {
 	(void)state;
 	uint64_t seed = 2017;
@@ -76,7 +76,7 @@ static void sampled(void **state)
 }
 
 /* A nearly flat mirror returns all; nothing returns more than it gets; normal incidence works. */
-static void limits(void **state)
+static void a_flat_mirror_returns_all_and_nothing_returns_more(void **state)
 {
 	(void)state;
 	for (int gaf = GAF_UNCORRELATED; gaf < GAF_COUNT; gaf++) {
@@ -94,7 +94,7 @@ static void limits(void **state)
 	}
 }
 
-static void whole_model(void **state)
+static void albedo_of_a_model_is_the_sum_of_its_terms(void **state)
 {
 	(void)state;
 	struct cook_torrance model = mirror("std", 0.3, 3.0, GAF_UNCORRELATED);
@@ -129,7 +129,7 @@ static double brute(const struct cook_torrance *model, double theta_i)
 	return 2.0 * sum * (0.5 * M_PI / n_theta) * (M_PI / n_phi);
 }
 
-static void v_groove(void **state)
+static void v_groove_albedo_matches_a_plain_sum(void **state)
 {
 	(void)state;
 	static const double theta_i[] = {0.5, 1.2, 1.45};
@@ -141,7 +141,7 @@ static void v_groove(void **state)
 
 /* Rounding once kept the rule from ever being satisfied near grazing incidence: half a minute, and 6e-4 off for the
  * V-groove. */
-static void grazing(void **state)
+static void albedo_is_continuous_at_grazing_incidence(void **state)
 {
 	(void)state;
 	static const double sigma[] = {1e-7, 1e-4, 0.1, 2.0};
@@ -161,7 +161,7 @@ static void grazing(void **state)
 }
 
 /* energy_albedo_max() against a dense scan; one direction for all channels. */
-static void largest(void **state)
+static void largest_albedo_matches_a_dense_scan(void **state)
 {
 	(void)state;
 	for (int i = 0; i < 13; i++) {
@@ -191,7 +191,7 @@ static void largest(void **state)
 }
 
 /* energy_furnace(), whatever kd, ks and F are, against the mean of the lobe's albedo by Gauss and Legendre. */
-static void furnace(void **state)
+static void furnace_is_the_mean_albedo(void **state)
 {
 	(void)state;
 	gsl_integration_glfixed_table *nodes = gsl_integration_glfixed_table_alloc(32);
@@ -212,7 +212,7 @@ static void furnace(void **state)
 	gsl_integration_glfixed_table_free(nodes);
 }
 
-static void refusals(void **state)
+static void arguments_outside_the_domain_are_refused(void **state)
 {
 	(void)state;
 	struct cook_torrance model = mirror("std", 0.3, 3.0, GAF_UNCORRELATED);
@@ -232,9 +232,15 @@ static void refusals(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(golden_balance), cmocka_unit_test(sampled),  cmocka_unit_test(limits),
-		cmocka_unit_test(whole_model),    cmocka_unit_test(v_groove), cmocka_unit_test(grazing),
-		cmocka_unit_test(largest),        cmocka_unit_test(furnace),  cmocka_unit_test(refusals),
+		cmocka_unit_test(albedo_matches_golden_rows),
+		cmocka_unit_test(albedo_is_the_mean_of_sampled_weights),
+		cmocka_unit_test(a_flat_mirror_returns_all_and_nothing_returns_more),
+		cmocka_unit_test(albedo_of_a_model_is_the_sum_of_its_terms),
+		cmocka_unit_test(v_groove_albedo_matches_a_plain_sum),
+		cmocka_unit_test(albedo_is_continuous_at_grazing_incidence),
+		cmocka_unit_test(largest_albedo_matches_a_dense_scan),
+		cmocka_unit_test(furnace_is_the_mean_albedo),
+		cmocka_unit_test(arguments_outside_the_domain_are_refused),
 	};
 	return cmocka_run_group_tests_name("energy", tests, NULL, NULL);
 }

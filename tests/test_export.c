@@ -59,7 +59,7 @@ static void expect_same(const struct cook_torrance *got, const struct cook_torra
 }
 
 /* The error of a model on a table, as the first number behind the words in the header tells it. */
-static void expect_told(const char *words, double error)
+static void expect_stated(const char *words, double error)
 {
 	const char *at = strstr(last.out, words);
 
@@ -220,14 +220,14 @@ static void mitsuba_gets_a_substitute(void **state)
 	expect_out("error of the model 0, of what stands here");
 	const struct cook_torrance got = read_mitsuba();
 	assert_string_equal(ndf_name(got.ndf.class), "ggx");
-	expect_told("of what stands here ", error_on(&truth, &got));
+	expect_stated("of what stands here ", error_on(&truth, &got));
 	/* It is a fit: dropping gamma alone does worse. */
 	struct cook_torrance dropped = given("ggx", 0.2, 2, 1.5);
 	assert_true(error_on(&truth, &got) < 0.8 * error_on(&truth, &dropped));
 	export_it(SMALL " --format mitsuba " LOBE " --ndf std --gamma 20 --sigma 0.2");
 	expect_out("<!-- approximate: Mitsuba 3 has no NDF std of gamma 20; beckmann was fitted in its place");
 	const struct cook_torrance nearer = read_mitsuba(), far = given("std", 0.2, 20, 1.5);
-	expect_told("of what stands here ", error_on(&far, &nearer));
+	expect_stated("of what stands here ", error_on(&far, &nearer));
 }
 
 static void mitsuba_blends_within_one(void **state)
@@ -244,7 +244,7 @@ static void mitsuba_blends_within_one(void **state)
 	struct cook_torrance got = read_mitsuba();
 	assert_true(got.kd[0] + got.ks[0] <= 1 + 1e-15);
 	assert_true(got.n > 1.4); /* reflects more */
-	expect_told("of what stands here ", error_on(&truth, &got));
+	expect_stated("of what stands here ", error_on(&truth, &got));
 	check_between(error_on(&truth, &got), 0, 1e-4, "error of the blend");
 
 	/* Without an index to raise: neither other weights nor another roughness do better. */
@@ -258,7 +258,7 @@ static void mitsuba_blends_within_one(void **state)
 	got = read_mitsuba();
 	check_rel(got.kd[0] + got.ks[0], 1, 1e-15, "kd + ks");
 	const double best = error_within(40, &truth, &got);
-	expect_told("of what stands here ", best);
+	expect_stated("of what stands here ", best);
 	for (int side = -1; side <= 1; side += 2) {
 		struct cook_torrance weights = got, roughness = got;
 		const double sigma = got.ndf.sigma_x * (1 + 0.02 * side);
@@ -345,7 +345,7 @@ static void pbrt_says_what_it_can(void **state)
 		truth.kd[c] = 0.3;
 		truth.ks[c] = 0.5;
 	}
-	expect_told("of what stands here ", error_on(&truth, &got));
+	expect_stated("of what stands here ", error_on(&truth, &got));
 
 	/* One ks for all channels; kd is as good as it can be beside it. */
 	export_it(SMALL " --format pbrt " LOBE " --ndf ggx --sigma 0.23 --gaf correlated");
@@ -354,7 +354,7 @@ static void pbrt_says_what_it_can(void **state)
 	truth = given("ggx", 0.23, 2, 1.5);
 	truth.gaf = GAF_CORRELATED;
 	const double best = error_on(&truth, &got);
-	expect_told("of what stands here ", best);
+	expect_stated("of what stands here ", best);
 	for (int c = 0; c < 3; c++)
 		for (double factor = 0.97; factor < 1.1; factor += 0.06) {
 			struct cook_torrance other = got;
@@ -471,13 +471,13 @@ static void gltf_tells_its_error(void **state)
 	struct gltf g = read_gltf();
 	check_rel(g.roughness, 0.3, 1e-15, "roughness");
 	check_rel(g.specular * g.color[0], 0.42, 1e-15, "colour");
-	expect_told("error of what a glTF viewer shows ", gltf_error(&g, &truth));
+	expect_stated("error of what a glTF viewer shows ", gltf_error(&g, &truth));
 
 	truth = given("std", 0.2, 1.7, 1.5);
 	export_it(SMALL " --format gltf " LOBE " --sigma 0.2 --gamma 1.7");
 	expect_out("no NDF std of gamma 1.7, no uncorrelated G, no Fresnel term dielectric; ggx (gamma 2) was fitted");
 	g = read_gltf();
-	expect_told("error of what a glTF viewer shows ", gltf_error(&g, &truth));
+	expect_stated("error of what a glTF viewer shows ", gltf_error(&g, &truth));
 	export_it(SMALL " --format gltf " LOBE " --ndf ggx --sigma 2.5 --gaf correlated --fresnel schlick");
 	g = read_gltf();
 	expect_out("no roughness of 2.5");
@@ -544,7 +544,7 @@ static void json_is_the_model(void **state)
 	}
 }
 
-static void json_of_a_table_of_nodes(void **state)
+static void json_holds_a_table_of_nodes(void **state)
 {
 	const struct fit_options fit = fit_options_default();
 	struct fit_options read_fit = fit;
@@ -709,7 +709,7 @@ static void damaged_json_is_read_or_refused(void **state)
 
 /* From a file and from a table */
 
-static void from_a_fit_and_from_its_row(void **state)
+static void a_fit_and_its_row_export_alike(void **state)
 {
 	(void)state;
 	stdfit("synth m.binary --kd 0.2,0.1,0.05 --ks 0.5 --sigma 0.2 --gamma 1.8 --noise 0.1 --threads 1");
@@ -728,8 +728,8 @@ static void from_a_fit_and_from_its_row(void **state)
 	struct csv_table table = read_table("fits.csv");
 	export_it("--from fits.csv --row 2 --format mitsuba");
 	expect_out("against m.binary");
-	expect_told("error of the model ", result_number(table.row[1], RESULT_ERROR));
-	expect_told("of what stands here ", result_number(table.row[0], RESULT_ERROR));
+	expect_stated("error of the model ", result_number(table.row[1], RESULT_ERROR));
+	expect_stated("of what stands here ", result_number(table.row[0], RESULT_ERROR));
 	assert_string_equal(table.row[0][RESULT_NDF], "ggx");
 	csv_table_free(&table);
 	/* Not to one that has changed since. */
@@ -806,11 +806,11 @@ int main(void)
 		cmocka_unit_test(gltf_tells_its_error),
 		cmocka_unit_test(merl_is_the_model),
 		cmocka_unit_test(json_is_the_model),
-		cmocka_unit_test(json_of_a_table_of_nodes),
+		cmocka_unit_test(json_holds_a_table_of_nodes),
 		cmocka_unit_test(bad_json_is_reported),
 		cmocka_unit_test(escapes_and_big_numbers_are_read),
 		cmocka_unit_test(damaged_json_is_read_or_refused),
-		cmocka_unit_test(from_a_fit_and_from_its_row),
+		cmocka_unit_test(a_fit_and_its_row_export_alike),
 		cmocka_unit_test(refusals_are_one_line),
 	};
 

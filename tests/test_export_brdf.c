@@ -167,7 +167,7 @@ static const struct {
 	{"low", 0.03, 0.4},          {"low", 0.1, 900},
 };
 
-static void every_shape(void **state)
+static void shader_is_the_model_for_every_shape(void **state)
 {
 	(void)state;
 	for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
@@ -194,7 +194,7 @@ static void make_pwl(struct pwl *pwl)
 }
 
 /* One shape of each NDF, with every G and F. */
-static void every_term(void **state)
+static void shader_is_the_model_for_every_G_and_F(void **state)
 {
 	static const struct {
 		const char *ndf;
@@ -226,7 +226,7 @@ static void every_term(void **state)
 	pwl_free(&pwl);
 }
 
-static void every_form_of_lambda(void **state)
+static void shader_is_the_model_for_every_form_of_Lambda(void **state)
 {
 	static const struct {
 		enum lambda_form form;
@@ -247,7 +247,7 @@ static void every_form_of_lambda(void **state)
 	}
 }
 
-static void indices_near_and_far(void **state)
+static void shader_is_the_model_for_indices_near_1_and_far(void **state)
 {
 	static const double n[] = {1.0001, 1.01, 3, 38.575, 100}, k[] = {0, 1e-3, 0.5, 8, 100};
 
@@ -264,7 +264,7 @@ static void indices_near_and_far(void **state)
 		}
 }
 
-static void only_one_term(void **state)
+static void shader_is_the_model_with_one_term_only(void **state)
 {
 	struct cook_torrance model = make_model("std", 0.2, 1.8, 1.5);
 
@@ -353,9 +353,12 @@ static void glslang_takes_it(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(every_shape),          cmocka_unit_test(every_term),
-		cmocka_unit_test(every_form_of_lambda), cmocka_unit_test(indices_near_and_far),
-		cmocka_unit_test(only_one_term),        cmocka_unit_test(out_of_range_is_refused),
+		cmocka_unit_test(shader_is_the_model_for_every_shape),
+		cmocka_unit_test(shader_is_the_model_for_every_G_and_F),
+		cmocka_unit_test(shader_is_the_model_for_every_form_of_Lambda),
+		cmocka_unit_test(shader_is_the_model_for_indices_near_1_and_far),
+		cmocka_unit_test(shader_is_the_model_with_one_term_only),
+		cmocka_unit_test(out_of_range_is_refused),
 		cmocka_unit_test(glslang_takes_it),
 	};
 

@@ -383,7 +383,7 @@ static void the_archive(void **state)
 	expect_only("");
 }
 
-static void wrong_usage(void **state)
+static void wrong_usage_is_refused(void **state)
 {
 	(void)state;
 	static const char *const wrong[] = {"-x",   "-u",    "-u ftp://x/y", "-u http://",      "-t 0",
@@ -458,7 +458,7 @@ int main(void)
 		cmocka_unit_test(disk_full_each),
 		cmocka_unit_test(an_interrupt_each),
 		cmocka_unit_test(the_archive),
-		cmocka_unit_test(wrong_usage),
+		cmocka_unit_test(wrong_usage_is_refused),
 		cmocka_unit_test(slow_servers),
 	};
 	return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -2,7 +2,7 @@
 #include "check.h"
 #include "src/fresnel.h"
 
-static void golden_dielectric(void **state)
+static void dielectric_matches_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden = golden_open("tests/golden/fresnel_dielectric.csv", "eta,cos_i,F");
@@ -13,7 +13,7 @@ static void golden_dielectric(void **state)
 	}
 }
 
-static void golden_conductor(void **state)
+static void conductor_matches_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden = golden_open("tests/golden/fresnel_conductor.csv", "eta,k,cos_i,F");
@@ -54,7 +54,7 @@ static void edges_give_their_limits(void **state)
 }
 
 /* A weak interface reflects (n - 1)^2/4 (1/c^4)(1 - 2 s^2 + 2 s^4): the first order of both amplitudes in n - 1. */
-static void weak_interface(void **state)
+static void a_weak_interface_reflects_to_first_order(void **state)
 {
 	(void)state;
 	const double n_minus_1 = 0x1p-30;
@@ -120,10 +120,10 @@ static void names_and_values_are_inverse(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(golden_dielectric),
-		cmocka_unit_test(golden_conductor),
+		cmocka_unit_test(dielectric_matches_golden_rows),
+		cmocka_unit_test(conductor_matches_golden_rows),
 		cmocka_unit_test(edges_give_their_limits),
-		cmocka_unit_test(weak_interface),
+		cmocka_unit_test(a_weak_interface_reflects_to_first_order),
 		cmocka_unit_test(F_at_the_Brewster_angle_is_half_of_r_s_squared),
 		cmocka_unit_test(stays_in_range),
 		cmocka_unit_test(F_is_the_form_it_is_asked_for),

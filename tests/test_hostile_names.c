@@ -72,7 +72,7 @@ static void expect_nothing_executed(void)
 	assert_string_equal(last.out, "");
 }
 
-static void names_in_plots_and_pages(void **state)
+static void names_do_no_harm_in_plots_and_pages(void **state)
 {
 	(void)state;
 	if (!have_gnuplot())
@@ -112,7 +112,7 @@ static void names_in_plots_and_pages(void **state)
 	expect_nothing_executed();
 }
 
-static void names_in_traces(void **state)
+static void names_do_no_harm_in_traces(void **state)
 {
 	(void)state;
 	char *text = NULL;
@@ -140,7 +140,7 @@ static void names_in_traces(void **state)
 	expect_nothing_executed();
 }
 
-static void names_in_renderings(void **state)
+static void names_do_no_harm_in_renderings(void **state)
 {
 	(void)state;
 	static const struct csv_column columns[] = {{"material", false}, {"ndf", false},    {"error", true},
@@ -181,7 +181,7 @@ static void names_in_renderings(void **state)
 	expect_nothing_executed();
 }
 
-static void names_in_other_formats(void **state)
+static void names_do_no_harm_in_other_formats(void **state)
 {
 	(void)state;
 	static const char *const format[] = {"json", "gltf", "mitsuba", "pbrt", "brdf"};
@@ -226,10 +226,10 @@ static void names_in_other_formats(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(names_in_renderings),
-		cmocka_unit_test(names_in_plots_and_pages),
-		cmocka_unit_test(names_in_traces),
-		cmocka_unit_test(names_in_other_formats),
+		cmocka_unit_test(names_do_no_harm_in_renderings),
+		cmocka_unit_test(names_do_no_harm_in_plots_and_pages),
+		cmocka_unit_test(names_do_no_harm_in_traces),
+		cmocka_unit_test(names_do_no_harm_in_other_formats),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);
 }

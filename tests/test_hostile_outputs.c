@@ -62,7 +62,7 @@ static void fill_disk(int left)
 	shell(command);
 }
 
-static void a_batch_on_a_full_disk(void **state)
+static void a_batch_on_a_full_disk_keeps_its_rows(void **state)
 {
 	(void)state;
 	mount_disk("size=64k");
@@ -95,7 +95,7 @@ static void a_batch_on_a_full_disk(void **state)
 }
 
 /* An old file is there still, and nothing beside it. */
-static void old_files_on_a_full_disk(void **state)
+static void old_files_on_a_full_disk_stay(void **state)
 {
 	(void)state;
 	static const struct {
@@ -129,7 +129,7 @@ static void old_files_on_a_full_disk(void **state)
 }
 
 /* Whatever room there is, each file is the same as with plenty; there are all of them only if the program says so. */
-static void plots_on_a_small_disk(void **state)
+static void plots_on_a_small_disk_are_whole_or_absent(void **state)
 {
 	(void)state;
 	if (!have_gnuplot())
@@ -159,7 +159,7 @@ static void plots_on_a_small_disk(void **state)
 }
 
 /* A page is the old one, or whole, though perhaps without pictures, which it says. */
-static void pages_on_a_small_disk(void **state)
+static void pages_on_a_small_disk_are_whole_or_absent(void **state)
 {
 	(void)state;
 	if (!have_gnuplot())
@@ -190,7 +190,7 @@ static void pages_on_a_small_disk(void **state)
 }
 
 /* Without a disk of our own: a limit on the size of files. */
-static void files_that_grow_too_large(void **state)
+static void files_that_grow_too_large_are_reported(void **state)
 {
 	(void)state;
 	if (THREAD_SANITIZER)
@@ -206,7 +206,7 @@ static void files_that_grow_too_large(void **state)
 	assert_string_equal(last.out, "old\nold\nindex.html\n");
 }
 
-static void streams_that_take_nothing(void **state)
+static void streams_that_take_nothing_are_reported(void **state)
 {
 	(void)state;
 	stdfit("render a.binary " MODEL " " QUICK " -o there.pfm");
@@ -239,7 +239,7 @@ static void streams_that_take_nothing(void **state)
 	assert_string_equal(last.out, "3\n");
 }
 
-static void pictures_into_a_pipe(void **state)
+static void pictures_go_into_a_pipe(void **state)
 {
 	(void)state;
 	shell("mkfifo pipe.pfm; cat pipe.pfm >got.pfm & \"$STDFIT\" render a.binary " MODEL " " QUICK
@@ -255,7 +255,7 @@ static void pictures_into_a_pipe(void **state)
 }
 
 /* One file of several is not waited for at a pipe, and no directory is in its place; the rest stays and gets done. */
-static void places_that_are_taken(void **state)
+static void names_that_are_taken_are_refused(void **state)
 {
 	(void)state;
 	static const char *const name[] = {"errors.csv", "a/map.gp", "a/ndf.png", "index.html", "fits.csv"};
@@ -283,7 +283,7 @@ static void places_that_are_taken(void **state)
 	shell("rm -r place");
 }
 
-static void directories_that_take_nothing(void **state)
+static void directories_that_take_nothing_are_reported(void **state)
 {
 	(void)state;
 	static const char *const command[] = {"plot fit.csv -o shut",
@@ -316,7 +316,7 @@ static void directories_that_take_nothing(void **state)
 	assert_string_equal(last.out, "");
 }
 
-static void outputs_that_are_inputs(void **state)
+static void outputs_that_are_inputs_are_refused(void **state)
 {
 	(void)state;
 	shell("mkdir -p own/a linked; cp fit.csv own/a/map.csv; cp fit.csv table.csv; ln -s ../table.csv "
@@ -345,11 +345,16 @@ static void outputs_that_are_inputs(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(a_batch_on_a_full_disk),    cmocka_unit_test(old_files_on_a_full_disk),
-		cmocka_unit_test(plots_on_a_small_disk),     cmocka_unit_test(pages_on_a_small_disk),
-		cmocka_unit_test(files_that_grow_too_large), cmocka_unit_test(streams_that_take_nothing),
-		cmocka_unit_test(pictures_into_a_pipe),      cmocka_unit_test(directories_that_take_nothing),
-		cmocka_unit_test(places_that_are_taken),     cmocka_unit_test(outputs_that_are_inputs),
+		cmocka_unit_test(a_batch_on_a_full_disk_keeps_its_rows),
+		cmocka_unit_test(old_files_on_a_full_disk_stay),
+		cmocka_unit_test(plots_on_a_small_disk_are_whole_or_absent),
+		cmocka_unit_test(pages_on_a_small_disk_are_whole_or_absent),
+		cmocka_unit_test(files_that_grow_too_large_are_reported),
+		cmocka_unit_test(streams_that_take_nothing_are_reported),
+		cmocka_unit_test(pictures_go_into_a_pipe),
+		cmocka_unit_test(directories_that_take_nothing_are_reported),
+		cmocka_unit_test(names_that_are_taken_are_refused),
+		cmocka_unit_test(outputs_that_are_inputs_are_refused),
 	};
 	return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -143,7 +143,7 @@ static void examples_with_the_static_library(void **state)
 	run("mv shared/* usr/lib", 0);
 }
 
-static void below_another_root(void **state)
+static void it_installs_below_another_root(void **state)
 {
 	(void)state;
 	run("$make install PREFIX=/opt/stdfit DESTDIR=$PWD/stage && find stage -maxdepth 3 && cat "
@@ -157,7 +157,7 @@ static void below_another_root(void **state)
 }
 
 /* The last test: takes away what was installed and leaves what was not. */
-static void uninstalls(void **state)
+static void uninstalling_leaves_what_was_not_installed(void **state)
 {
 	(void)state;
 	run("touch usr/include/stdfit/other.h usr/lib/libother.a\n$make uninstall && find usr ! -type d | sort", 0);
@@ -169,7 +169,7 @@ static void uninstalls(void **state)
 }
 
 /* All that git knows is in the tarball, where this is a clone; what it holds can be made from. */
-static void tarball(void **state)
+static void the_tarball_holds_what_git_knows(void **state)
 {
 	(void)state;
 	run("$make dist && tar -xzf \"$(dirname \"$STDFIT\")/stdfit-$(pkg-config --modversion stdfit).tar.gz\" && ls "
@@ -211,9 +211,9 @@ int main(void)
 		cmocka_unit_test(cffi_reads_the_header),
 		cmocka_unit_test(examples_with_the_shared_library),
 		cmocka_unit_test(examples_with_the_static_library),
-		cmocka_unit_test(below_another_root),
-		cmocka_unit_test(tarball),
-		cmocka_unit_test(uninstalls),
+		cmocka_unit_test(it_installs_below_another_root),
+		cmocka_unit_test(the_tarball_holds_what_git_knows),
+		cmocka_unit_test(uninstalling_leaves_what_was_not_installed),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);
 }

@@ -33,7 +33,7 @@ static double K_of(double gamma)
 	return std_make(1.0, gamma, LAMBDA_2F1).lambda_K;
 }
 
-static void golden_2f1(void **state)
+static void gauss_2f1_matches_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden = golden_open("tests/golden/hyp2f1.csv", "gamma,z,F");
@@ -45,7 +45,7 @@ static void golden_2f1(void **state)
 }
 
 /* GSL is asked inside its domain only: its handler, which by default ends the process, is never called. */
-static void handler_rests(void **state)
+static void gsl_error_handler_is_never_called(void **state)
 {
 	(void)state;
 	handler_calls = 0;
@@ -76,7 +76,7 @@ static double worst_G1(double gamma, enum lambda_form form)
 	return worst;
 }
 
-static void against_exact(void **state)
+static void finite_sums_match_the_exact_form(void **state)
 {
 	(void)state;
 	const double gammas[] = {1.5001, 1.51, 1.72, 2.0, 2.2, 2.5, 3.0, 3.5, 7.5, 10.0, 11.9, 12.0, 15.0, 15.5, 39.0};
@@ -93,7 +93,7 @@ static void against_exact(void **state)
 }
 
 /* The paper's approximation errs by 0.71 % at most, worst near gamma = 2.2. */
-static void rational(void **state)
+static void rational_form_errs_as_stated(void **state)
 {
 	(void)state;
 	double worst = 0.0;
@@ -128,7 +128,7 @@ static double table_1(double gamma, double mu, double s)
 	return 0.5 * (s * exp(-m2 / s2) / (mu * sqrt(M_PI)) - erfc(mu / s));
 }
 
-static void closed_forms(void **state)
+static void forms_match_the_closed_forms_of_table_1(void **state)
 {
 	(void)state;
 	const double gammas[] = {2.0, 2.5, 3.0, 3.5, 4.0, INFINITY};
@@ -150,7 +150,7 @@ static void closed_forms(void **state)
 }
 
 /* The paper's A1, printed as two different sums, is K/(gamma-1). */
-static void A1(void **state)
+static void printed_sums_of_A1_are_K_over_gamma_minus_1(void **state)
 {
 	(void)state;
 	for (unsigned gamma = 2; gamma <= 15; gamma++) {
@@ -165,7 +165,7 @@ static void A1(void **state)
 }
 
 /* Other members of the family take the forms as std with another roughness does. */
-static void family(void **state)
+static void other_members_of_the_family_take_the_forms_as_std_does(void **state)
 {
 	(void)state;
 	struct ndf hyper, t2;
@@ -189,7 +189,7 @@ static void family(void **state)
 	}
 }
 
-static void refusals(void **state)
+static void forms_outside_their_domain_are_refused(void **state)
 {
 	(void)state;
 	const struct {
@@ -228,7 +228,7 @@ static void refusals(void **state)
 	}
 }
 
-static void names(void **state)
+static void names_and_forms_are_inverse(void **state)
 {
 	(void)state;
 	const char *const want[LAMBDA_FORM_COUNT] = {"exact", "2f1", "integer", "half-integer", "rational"};
@@ -247,9 +247,15 @@ static void names(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(golden_2f1), cmocka_unit_test(handler_rests), cmocka_unit_test(against_exact),
-		cmocka_unit_test(rational),   cmocka_unit_test(closed_forms),  cmocka_unit_test(A1),
-		cmocka_unit_test(family),     cmocka_unit_test(refusals),      cmocka_unit_test(names),
+		cmocka_unit_test(gauss_2f1_matches_golden_rows),
+		cmocka_unit_test(gsl_error_handler_is_never_called),
+		cmocka_unit_test(finite_sums_match_the_exact_form),
+		cmocka_unit_test(rational_form_errs_as_stated),
+		cmocka_unit_test(forms_match_the_closed_forms_of_table_1),
+		cmocka_unit_test(printed_sums_of_A1_are_K_over_gamma_minus_1),
+		cmocka_unit_test(other_members_of_the_family_take_the_forms_as_std_does),
+		cmocka_unit_test(forms_outside_their_domain_are_refused),
+		cmocka_unit_test(names_and_forms_are_inverse),
 	};
 	gsl_set_error_handler(count_call);
 	return cmocka_run_group_tests_name("lambda_form", tests, NULL, NULL);

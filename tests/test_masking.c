@@ -42,7 +42,7 @@ static void interpolates_within_its_bound(void **state)
 	check_between(fine, 0, 1.2e-7, "fine");
 }
 
-static void q_of_directions(void **state)
+static void q_is_the_logarithm_of_the_cotangent(void **state)
 {
 	(void)state;
 	assert_int_equal(masking_q((struct vec3){0, 0, 1}), MASKING_Q_MAX << MASKING_Q_BITS);
@@ -54,7 +54,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(interpolates_within_its_bound),
-		cmocka_unit_test(q_of_directions),
+		cmocka_unit_test(q_is_the_logarithm_of_the_cotangent),
 	};
 
 	return cmocka_run_group_tests_name("masking", tests, NULL, NULL);

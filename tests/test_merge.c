@@ -168,7 +168,7 @@ static void refuse(const char *arguments, const char *message)
 	assert_string_equal(last.out, "");
 }
 
-static void refusals(void **state)
+static void tables_that_do_not_go_together_are_refused(void **state)
 {
 	(void)state;
 	fit_shards("gray", 3, CHEAP " --gray");
@@ -205,7 +205,7 @@ static void refusals(void **state)
 	refuse("p-1.csv folder.csv", "cannot read 'folder.csv'");
 }
 
-static void failed_writes(void **state)
+static void failed_writes_are_reported(void **state)
 {
 	(void)state;
 	stdfit("merge p-1.csv p-2.csv -o /nowhere/x.csv");
@@ -230,7 +230,7 @@ static void failed_writes(void **state)
 	expect_code(0);
 }
 
-static void wrong_usage(void **state)
+static void wrong_usage_is_refused(void **state)
 {
 	(void)state;
 	static const struct {
@@ -260,7 +260,7 @@ static void wrong_usage(void **state)
 }
 
 /* Of --within a file has one row, of whichever NDF. */
-static void with_within(void **state)
+static void shares_with_within_make_the_whole(void **state)
 {
 	(void)state;
 	stdfit("all " CHEAP " --within 1% -o whole_within.csv");
@@ -285,10 +285,10 @@ int main(void)
 		cmocka_unit_test(rows_that_agree_may_stand_twice),
 		cmocka_unit_test(a_share_goes_on_where_it_stopped),
 		cmocka_unit_test(a_share_may_be_empty),
-		cmocka_unit_test(refusals),
-		cmocka_unit_test(failed_writes),
-		cmocka_unit_test(wrong_usage),
-		cmocka_unit_test(with_within),
+		cmocka_unit_test(tables_that_do_not_go_together_are_refused),
+		cmocka_unit_test(failed_writes_are_reported),
+		cmocka_unit_test(wrong_usage_is_refused),
+		cmocka_unit_test(shares_with_within_make_the_whole),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);
 }

@@ -2,6 +2,7 @@
 /* The MERL reader and writer, the table they fill, and output that is there whole or not at all. */
 #include "check.h"
 #include "data_readers/atomic_file.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/merl.h"
 #include "data_readers/text_quote.h"
 #include <dirent.h>
@@ -52,32 +53,32 @@ ssize_t pread(int fd, void *buffer, size_t size, off_t offset)
 }
 
 /* A directory of its own for every test, removed with what is in it. */
-struct place {
+struct directory {
 	char dir[512];
 	char path[PATH_MAX]; /* of the file named last */
 };
 
-static int place_make(void **state)
+static int directory_make(void **state)
 {
-	static struct place place;
+	static struct directory directory;
 	const char *tmp = getenv("TMPDIR");
 
-	snprintf(place.dir, sizeof place.dir, "%s/test_merl_XXXXXX", tmp && *tmp ? tmp : "/tmp");
+	snprintf(directory.dir, sizeof directory.dir, "%s/test_merl_XXXXXX", tmp && *tmp ? tmp : "/tmp");
 	memset(&meddle, 0, sizeof meddle);
-	*state = &place;
-	return mkdtemp(place.dir) ? 0 : -1;
+	*state = &directory;
+	return mkdtemp(directory.dir) ? 0 : -1;
 }
 
-static const char *in(struct place *place, const char *name)
+static const char *in(struct directory *directory, const char *name)
 {
-	snprintf(place->path, sizeof place->path, "%s/%s", place->dir, name);
-	return place->path;
+	snprintf(directory->path, sizeof directory->path, "%s/%s", directory->dir, name);
+	return directory->path;
 }
 
 /* Number of files in the directory; with `remove_them`, removes them too. */
-static int place_files(struct place *place, bool remove_them)
+static int directory_files(struct directory *directory, bool remove_them)
 {
-	DIR *dir = opendir(place->dir);
+	DIR *dir = opendir(directory->dir);
 	int n = 0;
 
 	assert_non_null(dir);
@@ -86,35 +87,37 @@ static int place_files(struct place *place, bool remove_them)
 			continue;
 		n++;
 		if (remove_them)
-			assert_int_equal(remove(in(place, entry->d_name)), 0);
+			assert_int_equal(remove(in(directory, entry->d_name)), 0);
 	}
 	closedir(dir);
 	return n;
 }
 
-static int place_remove(void **state)
+static int directory_remove(void **state)
 {
-	place_files(*state, true);
-	return rmdir(((struct place *)*state)->dir);
+	directory_files(*state, true);
+	return rmdir(((struct directory *)*state)->dir);
 }
 
 /* Makes a file of `size` bytes that starts with `start`; the rest is zero and takes no room on the disk. */
-static const char *make_file(struct place *place, const char *name, const void *start, size_t length, off_t size)
+static const char *make_file(struct directory *directory, const char *name, const void *start, size_t length,
+			     off_t size)
 {
-	const int fd = open(in(place, name), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+	const int fd = open(in(directory, name), O_WRONLY | O_CREAT | O_TRUNC, 0666);
 
 	assert_true(fd >= 0);
 	assert_int_equal(write(fd, start, length), length);
 	const int result = ftruncate(fd, size);
 	close(fd);
-	return result == 0 ? place->path : NULL;
+	return result == 0 ? directory->path : NULL;
 }
 
-static const char *make_table(struct place *place, const char *name, int32_t n0, int32_t n1, int32_t n2, off_t size)
+static const char *make_table(struct directory *directory, const char *name, int32_t n0, int32_t n1, int32_t n2,
+			      off_t size)
 {
 	const uint32_t header[3] = {htole32((uint32_t)n0), htole32((uint32_t)n1), htole32((uint32_t)n2)};
 
-	return make_file(place, name, header, sizeof header, size);
+	return make_file(directory, name, header, sizeof header, size);
 }
 
 static char *slurp(const char *path, size_t *size)
@@ -170,7 +173,7 @@ static void check_one_line(const char *text)
 
 /* --- bins ------------------------------------------------------------------------------------------------------- */
 
-static void test_bins_names(void **state)
+static void names_and_bins_are_inverse(void **state)
 {
 	enum bins bins = BINS_COUNT;
 
@@ -186,7 +189,7 @@ static void test_bins_names(void **state)
 	assert_int_equal(bins, BINS_NODE);
 }
 
-static void test_bins_angles(void **state)
+static void angles_of_bins_are_as_documented(void **state)
 {
 	const struct halfdiff node = bins_angles(BINS_NODE, 30, 17, 359);
 	const struct halfdiff centre = bins_angles(BINS_CENTRE, 30, 17, 359);
@@ -203,7 +206,7 @@ static void test_bins_angles(void **state)
 }
 
 /* Against long double, where that is wider than double; cosines near 90 degrees are where naive ones go wrong. */
-static void test_bins_trig(void **state)
+static void sines_and_cosines_of_bins_are_exact_at_the_ends(void **state)
 {
 	const long double radian = acosl(-1.0L) / 180.0L;
 	const double tol = LDBL_MANT_DIG >= 64 ? 3.0 * DBL_EPSILON : 1e-12;
@@ -247,7 +250,7 @@ static int count_above_horizon(enum bins bins)
 	return count;
 }
 
-static void test_entries_above_horizon(void **state)
+static void entries_above_the_horizon_are_counted(void **state)
 {
 	(void)state;
 	assert_int_equal(count_above_horizon(BINS_NODE), 1111430);
@@ -256,7 +259,7 @@ static void test_entries_above_horizon(void **state)
 
 /* --- table ------------------------------------------------------------------------------------------------------ */
 
-static void test_samples_alloc(void **state)
+static void a_new_table_is_masked(void **state)
 {
 	struct measurement measurement;
 
@@ -316,7 +319,7 @@ static void check_same(const struct measurement *got, const struct measurement *
 	}
 }
 
-static void round_trip(struct place *place, int n_phi_d)
+static void round_trip(struct directory *directory, int n_phi_d)
 {
 	struct measurement made, got = {0};
 	struct error error = {{0}};
@@ -324,7 +327,7 @@ static void round_trip(struct place *place, int n_phi_d)
 
 	assert_int_equal(measurement_alloc(&made, n_phi_d), STATUS_OK);
 	const size_t masked = fill(&made);
-	const char *path = in(place, "table.binary");
+	const char *path = in(directory, "table.binary");
 	if (merl_write(path, &made, &error) != STATUS_OK || merl_read(path, 2, &got, &error) != STATUS_OK)
 		fail_msg("%s", error.text);
 	check_same(&got, &made);
@@ -334,24 +337,24 @@ static void round_trip(struct place *place, int n_phi_d)
 	assert_int_equal(size, HEADER + 3 * 8 * measurement_count(&made));
 	assert_int_equal(got.file_size, size);
 	assert_int_equal(got.file_hash, XXH3_64bits(bytes, size));
-	assert_int_equal(place_files(place, false), 1);
+	assert_int_equal(directory_files(directory, false), 1);
 	free(bytes);
 	measurement_free(&got);
 	measurement_free(&made);
 }
 
-static void test_round_trip_180(void **state)
+static void a_180_table_comes_back(void **state)
 {
 	round_trip(*state, 180);
 }
 
-static void test_round_trip_360(void **state)
+static void a_360_table_comes_back(void **state)
 {
 	round_trip(*state, 360);
 }
 
 /* The hash of tables of zeros, as other programs give it. */
-static void test_hash(void **state)
+static void the_hash_is_that_of_the_bytes(void **state)
 {
 	struct measurement measurement;
 	const char *path = make_table(*state, "zero.binary", 90, 90, 180, SIZE_180);
@@ -368,7 +371,7 @@ static void test_hash(void **state)
 }
 
 /* Where numbers go and what they are multiplied by. */
-static void test_layout(void **state)
+static void planes_lie_as_the_format_has_them(void **state)
 {
 	struct measurement measurement;
 	const char *path = make_table(*state, "layout.binary", 90, 90, 180, SIZE_180);
@@ -418,9 +421,9 @@ static size_t mask_entry(int n)
 	return (size_t)n * (ENTRIES_180 - 1) / (N_MASK_CASES - 1);
 }
 
-static const char *make_masked(struct place *place)
+static const char *make_masked(struct directory *directory)
 {
-	const char *path = make_table(place, "masked.binary", 90, 90, 180, SIZE_180);
+	const char *path = make_table(directory, "masked.binary", 90, 90, 180, SIZE_180);
 
 	for (int n = 0; n < N_MASK_CASES; n++)
 		for (int c = 0; c < MERL_CHANNELS; c++)
@@ -428,7 +431,7 @@ static const char *make_masked(struct place *place)
 	return path;
 }
 
-static void test_masking(void **state)
+static void negative_and_nonfinite_entries_are_masked_and_counted(void **state)
 {
 	struct measurement measurement;
 	size_t count[3] = {0};
@@ -455,23 +458,23 @@ static void test_masking(void **state)
 	measurement_free(&measurement);
 }
 
-static void test_threads_change_nothing(void **state)
+static void threads_change_nothing(void **state)
 {
 	static const int threads[] = {2, 3, 8, 1000, 0, -5};
 	struct measurement one, got;
-	struct place *place = *state;
+	struct directory *directory = *state;
 
 	assert_int_equal(measurement_alloc(&one, 180), STATUS_OK);
 	fill(&one);
-	assert_int_equal(merl_write(in(place, "table.binary"), &one, NULL), STATUS_OK);
+	assert_int_equal(merl_write(in(directory, "table.binary"), &one, NULL), STATUS_OK);
 	measurement_free(&one);
 	for (int c = 0; c < MERL_CHANNELS; c++)
 		for (size_t e = 0; e < 20; e++)
-			poke(place->path, c, e * 72899 + (size_t)c, e % 2 ? INFINITY : -1.0);
-	assert_int_equal(merl_read(place->path, 1, &one, NULL), STATUS_OK);
+			poke(directory->path, c, e * 72899 + (size_t)c, e % 2 ? INFINITY : -1.0);
+	assert_int_equal(merl_read(directory->path, 1, &one, NULL), STATUS_OK);
 	assert_true(one.n_nonfinite > 0 && one.n_negative > one.n_nonfinite);
 	for (size_t t = 0; t < sizeof threads / sizeof *threads; t++) {
-		assert_int_equal(merl_read(place->path, threads[t], &got, NULL), STATUS_OK);
+		assert_int_equal(merl_read(directory->path, threads[t], &got, NULL), STATUS_OK);
 		check_same(&got, &one);
 		assert_int_equal(got.n_negative, one.n_negative);
 		assert_int_equal(got.n_nonfinite, one.n_nonfinite);
@@ -501,45 +504,45 @@ static void check_refused(const char *path, enum status status, const char *word
 	assert_int_equal(merl_read(path, 1, &measurement, NULL), status);
 }
 
-static void test_refuses_what_is_no_file(void **state)
+static void what_is_no_file_is_refused(void **state)
 {
-	struct place *place = *state;
+	struct directory *directory = *state;
 
-	check_refused(in(place, "missing.binary"), STATUS_IO, strerror(ENOENT));
-	check_refused(in(place, "missing/x.binary"), STATUS_IO, strerror(ENOENT));
+	check_refused(in(directory, "missing.binary"), STATUS_IO, strerror(ENOENT));
+	check_refused(in(directory, "missing/x.binary"), STATUS_IO, strerror(ENOENT));
 	check_refused("", STATUS_IO, strerror(ENOENT));
-	check_refused(place->dir, STATUS_FORMAT, "found a directory");
+	check_refused(directory->dir, STATUS_FORMAT, "found a directory");
 	check_refused("/dev/null", STATUS_FORMAT, "expected a regular file");
-	assert_int_equal(mkfifo(in(place, "fifo"), 0666), 0);
+	assert_int_equal(mkfifo(in(directory, "fifo"), 0666), 0);
 	alarm(60); /* a reader that waits for a writer is ended, and with it the test */
-	check_refused(place->path, STATUS_FORMAT, "expected a regular file");
+	check_refused(directory->path, STATUS_FORMAT, "expected a regular file");
 	alarm(0);
-	assert_int_equal(symlink("loop", in(place, "loop")), 0);
-	check_refused(place->path, STATUS_IO, strerror(ELOOP));
+	assert_int_equal(symlink("loop", in(directory, "loop")), 0);
+	check_refused(directory->path, STATUS_IO, strerror(ELOOP));
 }
 
-static void test_refuses_wrong_sizes(void **state)
+static void wrong_sizes_are_refused(void **state)
 {
 	static const off_t wrong[] = {
 		HEADER,       HEADER + 1,   4096,         SIZE_180 / 2, SIZE_180 - 8,
 		SIZE_180 - 1, SIZE_180 + 1, SIZE_180 + 8, 69984012,
 	};
-	struct place *place = *state;
+	struct directory *directory = *state;
 	char words[128];
 
-	check_refused(make_file(place, "x", "", 0, 0), STATUS_FORMAT, "the file is empty");
-	check_refused(make_table(place, "x", 90, 90, 180, 5), STATUS_FORMAT, "header of 12 bytes, found 5");
-	check_refused(make_table(place, "x", 90, 90, 180, 11), STATUS_FORMAT, "header of 12 bytes, found 11");
+	check_refused(make_file(directory, "x", "", 0, 0), STATUS_FORMAT, "the file is empty");
+	check_refused(make_table(directory, "x", 90, 90, 180, 5), STATUS_FORMAT, "header of 12 bytes, found 5");
+	check_refused(make_table(directory, "x", 90, 90, 180, 11), STATUS_FORMAT, "header of 12 bytes, found 11");
 	for (size_t w = 0; w < sizeof wrong / sizeof *wrong; w++) {
 		snprintf(words, sizeof words, "expected 34992012 bytes for a 90 x 90 x 180 table, found %jd",
 			 (intmax_t)wrong[w]);
-		check_refused(make_table(place, "x", 90, 90, 180, wrong[w]), STATUS_FORMAT, words);
+		check_refused(make_table(directory, "x", 90, 90, 180, wrong[w]), STATUS_FORMAT, words);
 	}
-	check_refused(make_table(place, "x", 90, 90, 360, SIZE_180), STATUS_FORMAT,
+	check_refused(make_table(directory, "x", 90, 90, 360, SIZE_180), STATUS_FORMAT,
 		      "expected 69984012 bytes for a 90 x 90 x 360 table, found 34992012");
 }
 
-static void test_refuses_wrong_dimensions(void **state)
+static void wrong_dimensions_are_refused(void **state)
 {
 	static const int32_t wrong[][3] = {
 		{0, 0, 0},
@@ -565,7 +568,7 @@ static void test_refuses_wrong_dimensions(void **state)
 	}
 }
 
-static void test_refuses_text(void **state)
+static void text_is_refused(void **state)
 {
 	static const char *const texts[] = {
 		"material,ndf,error,kd_r,kd_g,kd_b\nchrome,std,0.25,0,0,0\n",
@@ -580,7 +583,7 @@ static void test_refuses_text(void **state)
 	}
 }
 
-static void test_names_foreign_files(void **state)
+static void foreign_files_are_named(void **state)
 {
 	static const struct {
 		const char *head;
@@ -594,21 +597,26 @@ static void test_names_foreign_files(void **state)
 		{"\x28\xb5\x2f\xfdxxxxxxxx", 12, "zstd: expand it with unzstd"},
 		{"BZh91AY&SYxx", 12, "bzip2: expand it with bunzip2"},
 		{"PK\3\4xxxxxxxx", 12, "zip archive: unpack it with unzip"},
-		{"tensor_file\0\1\0", 14, "RGL measurement (.bsdf)"},
 		{"\0\0\0\x5a\0\0\0\x5a\0\0\0\xb4", 12, "big-endian"},
 		{"\0\0\0\x5a\0\0\0\x5a\0\0\1\x68", 12, "big-endian"},
 	};
 
-	for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
-		check_refused(make_file(*state, "x.binary", kinds[k].head, kinds[k].size, SIZE_180), STATUS_FORMAT,
-			      kinds[k].words);
+	/* By the reader of MERL files, and by the one that finds the format of a file. */
+	for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+		const char *path = make_file(*state, "x.binary", kinds[k].head, kinds[k].size, SIZE_180);
+		struct measurement measurement;
+		struct error error;
+
+		check_refused(path, STATUS_FORMAT, kinds[k].words);
+		assert_int_equal(measurement_read(path, NULL, &measurement, &error), STATUS_FORMAT);
+		assert_non_null(strstr(error.text, kinds[k].words));
+	}
 	check_refused(make_file(*state, "x.binary", "\x1f\x8b\x08", 3, 3), STATUS_FORMAT, "gunzip");
-	check_refused(make_file(*state, "x.binary", "tensor_file", 11, 11), STATUS_FORMAT, "looks like text");
 	check_refused(make_table(*state, "x", 90, 90, 180, 12 + (SIZE_180 - 12) / 2), STATUS_FORMAT,
 		      "numbers of 4 bytes");
 }
 
-static void test_refuses_huge_file(void **state)
+static void a_huge_file_is_refused(void **state)
 {
 	const char *path = make_table(*state, "huge.binary", 90, 90, 180, (off_t)1 << 40);
 
@@ -618,31 +626,31 @@ static void test_refuses_huge_file(void **state)
 }
 
 /* Runs `body` as somebody without root's rights; skips the test where that cannot be. */
-static void unprivileged(struct place *place, void (*body)(struct place *place))
+static void unprivileged(struct directory *directory, void (*body)(struct directory *directory))
 {
 	const uid_t uid = geteuid();
 
 	if (uid != 0) {
-		body(place);
+		body(directory);
 		return;
 	}
-	assert_int_equal(chmod(place->dir, mode_of(place->dir) | 0111), 0);
+	assert_int_equal(chmod(directory->dir, mode_of(directory->dir) | 0111), 0);
 	if (seteuid(65534) != 0)
 		skip_because("root is refused nothing, and cannot become somebody else here");
-	const bool reachable = faccessat(AT_FDCWD, place->dir, X_OK, AT_EACCESS) == 0;
+	const bool reachable = faccessat(AT_FDCWD, directory->dir, X_OK, AT_EACCESS) == 0;
 	if (reachable)
-		body(place);
+		body(directory);
 	assert_int_equal(seteuid(uid), 0);
 	if (!reachable)
 		skip_because("the temporary directory is closed to others than root");
 }
 
-static void read_unreadable(struct place *place)
+static void read_unreadable(struct directory *directory)
 {
-	check_refused(in(place, "x.binary"), STATUS_IO, strerror(EACCES));
+	check_refused(in(directory, "x.binary"), STATUS_IO, strerror(EACCES));
 }
 
-static void test_refuses_unreadable(void **state)
+static void an_unreadable_file_is_refused(void **state)
 {
 	make_table(*state, "x.binary", 90, 90, 180, SIZE_180);
 	assert_int_equal(chmod(in(*state, "x.binary"), 0), 0);
@@ -650,10 +658,10 @@ static void test_refuses_unreadable(void **state)
 }
 
 /* The first call reads the header; later ones belong to the planes. */
-static void test_reading_goes_wrong(void **state)
+static void errors_while_reading_are_reported(void **state)
 {
-	struct place *place = *state;
-	const char *path = make_table(place, "x.binary", 90, 90, 180, SIZE_180);
+	struct directory *directory = *state;
+	const char *path = make_table(directory, "x.binary", 90, 90, 180, SIZE_180);
 
 	for (int call = 1; call <= 23; call += 11) {
 		memset(&meddle, 0, sizeof meddle);
@@ -675,7 +683,7 @@ static void test_reading_goes_wrong(void **state)
 	assert_non_null(strstr(error.text, "it changed while being read"));
 }
 
-static void test_reading_in_pieces(void **state)
+static void reading_in_pieces_gives_the_same(void **state)
 {
 	struct measurement measurement;
 	const char *path = make_table(*state, "x.binary", 90, 90, 180, SIZE_180);
@@ -687,25 +695,26 @@ static void test_reading_in_pieces(void **state)
 	measurement_free(&measurement);
 }
 
-static void test_odd_names(void **state)
+static void odd_names_are_quoted(void **state)
 {
-	struct place *place = *state;
+	struct directory *directory = *state;
 	char name[256];
 
-	check_refused(in(place, "a\nb\x1b[31m\xff.binary"), STATUS_IO, "a\\x0ab\\x1b[31m\\xff.binary'");
-	check_refused(in(place, "h\xc3\xa4rte.binary"), STATUS_IO, "h\xc3\xa4rte.binary'");
+	check_refused(in(directory, "a\nb\x1b[31m\xff.binary"), STATUS_IO, "a\\x0ab\\x1b[31m\\xff.binary'");
+	check_refused(in(directory, "h\xc3\xa4rte.binary"), STATUS_IO, "h\xc3\xa4rte.binary'");
 	memset(name, 'n', sizeof name - 1);
 	name[sizeof name - 1] = '\0';
 	memcpy(name + sizeof name - 5, ".bin", 4);
-	check_refused(make_table(place, name, 90, 90, 180, 4096), STATUS_FORMAT, "nn.bin': expected 34992012 bytes");
-	make_table(place, name, 90, 90, 180, SIZE_180);
+	check_refused(make_table(directory, name, 90, 90, 180, 4096), STATUS_FORMAT,
+		      "nn.bin': expected 34992012 bytes");
+	make_table(directory, name, 90, 90, 180, SIZE_180);
 	struct measurement measurement;
-	assert_int_equal(merl_read(place->path, 1, &measurement, NULL), STATUS_OK);
-	assert_int_equal(merl_write(place->path, &measurement, NULL), STATUS_OK);
+	assert_int_equal(merl_read(directory->path, 1, &measurement, NULL), STATUS_OK);
+	assert_int_equal(merl_write(directory->path, &measurement, NULL), STATUS_OK);
 	measurement_free(&measurement);
 }
 
-static void test_text_quote(void **state)
+static void quoted_text_is_one_printable_line(void **state)
 {
 	char out[16];
 
@@ -749,11 +758,11 @@ static void write_text(const char *path, const char *text)
 	assert_null(file.temp);
 }
 
-static void test_atomic_commit(void **state)
+static void a_commit_replaces_the_file(void **state)
 {
-	struct place *place = *state;
+	struct directory *directory = *state;
 	const mode_t old_mask = umask(027);
-	const char *path = in(place, "out.csv");
+	const char *path = in(directory, "out.csv");
 
 	write_text(path, "first\n");
 	umask(old_mask);
@@ -763,82 +772,82 @@ static void test_atomic_commit(void **state)
 	write_text(path, "second\n");
 	check_content(path, "second\n");
 	assert_int_equal(mode_of(path), 0604);
-	assert_int_equal(place_files(place, false), 1);
+	assert_int_equal(directory_files(directory, false), 1);
 }
 
-static void test_atomic_abort(void **state)
+static void an_abort_leaves_the_file(void **state)
 {
-	struct place *place = *state;
+	struct directory *directory = *state;
 	struct atomic_file file;
-	const char *path = in(place, "out.csv");
+	const char *path = in(directory, "out.csv");
 
 	write_text(path, "old\n");
 	assert_int_equal(atomic_file_open(&file, path, NULL), STATUS_OK);
 	fputs("new\n", file.stream);
 	fflush(file.stream);
 	check_content(path, "old\n"); /* nothing shows before the commit */
-	assert_int_equal(place_files(place, false), 2);
+	assert_int_equal(directory_files(directory, false), 2);
 	atomic_file_abort(&file);
 	atomic_file_abort(&file);
-	check_content(in(place, "out.csv"), "old\n");
-	assert_int_equal(place_files(place, false), 1);
+	check_content(in(directory, "out.csv"), "old\n");
+	assert_int_equal(directory_files(directory, false), 1);
 
-	assert_int_equal(atomic_file_open(&file, in(place, "never"), NULL), STATUS_OK);
+	assert_int_equal(atomic_file_open(&file, in(directory, "never"), NULL), STATUS_OK);
 	atomic_file_abort(&file);
-	assert_int_equal(place_files(place, false), 1);
+	assert_int_equal(directory_files(directory, false), 1);
 }
 
 /* Two outputs of one process in one directory, and a left-over with the name the next would take. */
-static void test_atomic_names_do_not_clash(void **state)
+static void temporary_names_do_not_clash(void **state)
 {
-	struct place *place = *state;
+	struct directory *directory = *state;
 	struct atomic_file one, two;
 
-	assert_int_equal(atomic_file_open(&one, in(place, "one"), NULL), STATUS_OK);
-	assert_int_equal(atomic_file_open(&two, in(place, "two"), NULL), STATUS_OK);
+	assert_int_equal(atomic_file_open(&one, in(directory, "one"), NULL), STATUS_OK);
+	assert_int_equal(atomic_file_open(&two, in(directory, "two"), NULL), STATUS_OK);
 	assert_string_not_equal(one.temp, two.temp);
 	fputs("1", one.stream);
 	fputs("2", two.stream);
 	assert_int_equal(atomic_file_commit(&two, NULL), STATUS_OK);
 	assert_int_equal(atomic_file_commit(&one, NULL), STATUS_OK);
-	check_content(in(place, "one"), "1");
-	check_content(in(place, "two"), "2");
-	assert_int_equal(place_files(place, false), 2);
+	check_content(in(directory, "one"), "1");
+	check_content(in(directory, "two"), "2");
+	assert_int_equal(directory_files(directory, false), 2);
 }
 
-static void test_atomic_follows_links(void **state)
+static void links_are_followed(void **state)
 {
-	struct place *place = *state;
+	struct directory *directory = *state;
 	struct stat st;
 
-	assert_int_equal(mkdir(in(place, "sub"), 0777), 0);
-	assert_int_equal(symlink("sub/middle", in(place, "link")), 0);
-	assert_int_equal(symlink("real", in(place, "sub/middle")), 0);
-	write_text(in(place, "link"), "made\n"); /* what it points to is yet to be made */
-	check_content(in(place, "sub/real"), "made\n");
-	write_text(in(place, "link"), "made again\n");
-	check_content(in(place, "sub/real"), "made again\n");
-	assert_int_equal(lstat(in(place, "link"), &st), 0);
+	assert_int_equal(mkdir(in(directory, "sub"), 0777), 0);
+	assert_int_equal(symlink("sub/middle", in(directory, "link")), 0);
+	assert_int_equal(symlink("real", in(directory, "sub/middle")), 0);
+	write_text(in(directory, "link"), "made\n"); /* what it points to is yet to be made */
+	check_content(in(directory, "sub/real"), "made\n");
+	write_text(in(directory, "link"), "made again\n");
+	check_content(in(directory, "sub/real"), "made again\n");
+	assert_int_equal(lstat(in(directory, "link"), &st), 0);
 	assert_true(S_ISLNK(st.st_mode));
-	assert_int_equal(lstat(in(place, "sub/middle"), &st), 0);
+	assert_int_equal(lstat(in(directory, "sub/middle"), &st), 0);
 	assert_true(S_ISLNK(st.st_mode));
-	assert_int_equal(remove(in(place, "sub/middle")), 0);
-	assert_int_equal(remove(in(place, "sub/real")), 0);
+	assert_int_equal(remove(in(directory, "sub/middle")), 0);
+	assert_int_equal(remove(in(directory, "sub/real")), 0);
 
 	struct atomic_file file;
 	struct error error;
-	assert_int_equal(symlink("loop", in(place, "loop")), 0);
-	assert_int_equal(atomic_file_open(&file, in(place, "loop"), &error), STATUS_IO);
+	assert_int_equal(symlink("loop", in(directory, "loop")), 0);
+	assert_int_equal(atomic_file_open(&file, in(directory, "loop"), &error), STATUS_IO);
 	assert_non_null(strstr(error.text, strerror(ELOOP)));
 }
 
-static void test_atomic_leaves_special_files(void **state)
+static void special_files_are_left(void **state)
 {
-	struct place *place = *state;
+	struct directory *directory = *state;
 	struct stat st;
 	char got[16] = "", name[64];
 
-	const char *path = in(place, "fifo");
+	const char *path = in(directory, "fifo");
 	assert_int_equal(mkfifo(path, 0666), 0);
 	const int fifo = open(path, O_RDWR | O_NONBLOCK);
 	write_text(path, "through\n");
@@ -852,7 +861,7 @@ static void test_atomic_leaves_special_files(void **state)
 	assert_int_equal(stat("/dev/null", &st), 0);
 	assert_true(S_ISCHR(st.st_mode));
 
-	path = in(place, "log"); /* as with '-o /dev/stdout >> log' */
+	path = in(directory, "log"); /* as with '-o /dev/stdout >> log' */
 	const int log = open(path, O_WRONLY | O_CREAT | O_APPEND, 0666);
 	assert_int_equal(write(log, "before\n", 7), 7);
 	snprintf(name, sizeof name, "/dev/fd/%d", log);
@@ -860,7 +869,7 @@ static void test_atomic_leaves_special_files(void **state)
 	assert_int_equal(write(log, "after\n", 6), 6);
 	close(log);
 	check_content(path, "before\nadded\nafter\n");
-	assert_int_equal(place_files(place, false), 2);
+	assert_int_equal(directory_files(directory, false), 2);
 }
 
 /* Writing a table there has to fail with STATUS_IO and these words. */
@@ -884,148 +893,148 @@ static struct measurement zero_table(void)
 	return measurement;
 }
 
-static void test_write_where_nothing_can_be(void **state)
+static void writing_where_nothing_can_be_is_refused(void **state)
 {
-	struct place *place = *state;
+	struct directory *directory = *state;
 	struct measurement measurement = zero_table();
 
-	check_not_written(in(place, "missing/x.binary"), &measurement, strerror(ENOENT));
-	check_not_written(in(place, "missing\n/x.binary"), &measurement, "missing\\x0a/x.binary': ");
-	check_not_written(in(place, "new/"), &measurement, strerror(EISDIR));
-	check_not_written(place->dir, &measurement, strerror(EISDIR));
+	check_not_written(in(directory, "missing/x.binary"), &measurement, strerror(ENOENT));
+	check_not_written(in(directory, "missing\n/x.binary"), &measurement, "missing\\x0a/x.binary': ");
+	check_not_written(in(directory, "new/"), &measurement, strerror(EISDIR));
+	check_not_written(directory->dir, &measurement, strerror(EISDIR));
 	check_not_written("", &measurement, strerror(ENOENT));
-	make_file(place, "file", "x", 1, 1);
-	check_not_written(in(place, "file/x.binary"), &measurement, strerror(ENOTDIR));
-	assert_int_equal(place_files(place, false), 1);
+	make_file(directory, "file", "x", 1, 1);
+	check_not_written(in(directory, "file/x.binary"), &measurement, strerror(ENOTDIR));
+	assert_int_equal(directory_files(directory, false), 1);
 	if (access("/dev/full", W_OK) == 0)
 		check_not_written("/dev/full", &measurement, strerror(ENOSPC));
 	measurement_free(&measurement);
 }
 
-static void write_without_permission(struct place *place)
+static void write_without_permission(struct directory *directory)
 {
 	struct measurement measurement = zero_table();
 
-	check_not_written(in(place, "new.binary"), &measurement, strerror(EACCES));
-	check_not_written(in(place, "old.binary"), &measurement, strerror(EACCES));
+	check_not_written(in(directory, "new.binary"), &measurement, strerror(EACCES));
+	check_not_written(in(directory, "old.binary"), &measurement, strerror(EACCES));
 	measurement_free(&measurement);
 }
 
-static void test_write_without_permission(void **state)
+static void writing_without_permission_is_refused(void **state)
 {
-	struct place *place = *state;
+	struct directory *directory = *state;
 
-	make_file(place, "old.binary", "old", 3, 3);
-	assert_int_equal(chmod(in(place, "old.binary"), 0444), 0);
-	assert_int_equal(chmod(place->dir, 0555), 0);
-	unprivileged(place, write_without_permission);
-	assert_int_equal(chmod(place->dir, 0755), 0);
-	check_content(in(place, "old.binary"), "old");
-	assert_int_equal(place_files(place, false), 1);
+	make_file(directory, "old.binary", "old", 3, 3);
+	assert_int_equal(chmod(in(directory, "old.binary"), 0444), 0);
+	assert_int_equal(chmod(directory->dir, 0555), 0);
+	unprivileged(directory, write_without_permission);
+	assert_int_equal(chmod(directory->dir, 0755), 0);
+	check_content(in(directory, "old.binary"), "old");
+	assert_int_equal(directory_files(directory, false), 1);
 }
 
-static void write_read_only(struct place *place)
+static void write_read_only(struct directory *directory)
 {
 	struct measurement measurement = zero_table();
 
-	check_not_written(in(place, "old.binary"), &measurement, strerror(EACCES));
+	check_not_written(in(directory, "old.binary"), &measurement, strerror(EACCES));
 	measurement_free(&measurement);
 }
 
 /* The directory would allow to replace it: a read-only file is meant to stay. */
-static void test_write_over_read_only(void **state)
+static void a_read_only_file_is_replaced_or_refused(void **state)
 {
-	struct place *place = *state;
+	struct directory *directory = *state;
 
-	make_file(place, "old.binary", "old", 3, 3);
-	assert_int_equal(chmod(in(place, "old.binary"), 0444), 0);
-	assert_int_equal(chmod(place->dir, 0777), 0);
-	unprivileged(place, write_read_only);
-	check_content(in(place, "old.binary"), "old");
+	make_file(directory, "old.binary", "old", 3, 3);
+	assert_int_equal(chmod(in(directory, "old.binary"), 0444), 0);
+	assert_int_equal(chmod(directory->dir, 0777), 0);
+	unprivileged(directory, write_read_only);
+	check_content(in(directory, "old.binary"), "old");
 }
 
 /* A limit on the size of files stands for a full disk: it, too, strikes half way. */
-static void test_write_when_full(void **state)
+static void a_full_disk_leaves_the_old_file(void **state)
 {
-	struct place *place = *state;
+	struct directory *directory = *state;
 	struct measurement measurement = zero_table();
 	struct rlimit old, low;
 	struct atomic_file file;
 	struct error error;
 
-	make_file(place, "old.binary", "old", 3, 3);
+	make_file(directory, "old.binary", "old", 3, 3);
 	signal(SIGXFSZ, SIG_IGN);
 	assert_int_equal(getrlimit(RLIMIT_FSIZE, &old), 0);
 	low = old;
 	low.rlim_cur = 1000000;
 	assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
-	check_not_written(in(place, "old.binary"), &measurement, strerror(EFBIG));
+	check_not_written(in(directory, "old.binary"), &measurement, strerror(EFBIG));
 
 	/* The same for one who leaves all checking to the commit: lines lost in the middle, the stream fine at the end.
 	 */
-	assert_int_equal(atomic_file_open(&file, in(place, "old.binary"), NULL), STATUS_OK);
+	assert_int_equal(atomic_file_open(&file, in(directory, "old.binary"), NULL), STATUS_OK);
 	for (int line = 0; line < 300000; line++)
 		fprintf(file.stream, "%d\n", line);
 	assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
 	assert_int_equal(atomic_file_commit(&file, &error), STATUS_IO);
 	signal(SIGXFSZ, SIG_DFL);
 	assert_non_null(strstr(error.text, "cannot write '"));
-	check_content(in(place, "old.binary"), "old");
-	assert_int_equal(place_files(place, false), 1);
+	check_content(in(directory, "old.binary"), "old");
+	assert_int_equal(directory_files(directory, false), 1);
 	measurement_free(&measurement);
 }
 
-static void test_rename_fails(void **state)
+static void a_failed_rename_leaves_the_old_file(void **state)
 {
-	struct place *place = *state;
+	struct directory *directory = *state;
 	struct atomic_file file;
 	struct error error;
 
-	assert_int_equal(atomic_file_open(&file, in(place, "out"), NULL), STATUS_OK);
+	assert_int_equal(atomic_file_open(&file, in(directory, "out"), NULL), STATUS_OK);
 	fputs("text", file.stream);
-	assert_int_equal(mkdir(in(place, "out"), 0777), 0);
+	assert_int_equal(mkdir(in(directory, "out"), 0777), 0);
 	assert_int_equal(atomic_file_commit(&file, &error), STATUS_IO);
 	assert_non_null(strstr(error.text, strerror(EISDIR)));
-	assert_int_equal(place_files(place, false), 1);
+	assert_int_equal(directory_files(directory, false), 1);
 }
 
-#define TEST(name) cmocka_unit_test_setup_teardown(name, place_make, place_remove)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, directory_make, directory_remove)
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(test_bins_names),
-		cmocka_unit_test(test_bins_angles),
-		cmocka_unit_test(test_bins_trig),
-		cmocka_unit_test(test_entries_above_horizon),
-		cmocka_unit_test(test_samples_alloc),
-		cmocka_unit_test(test_text_quote),
-		TEST(test_round_trip_180),
-		TEST(test_round_trip_360),
-		TEST(test_hash),
-		TEST(test_layout),
-		TEST(test_masking),
-		TEST(test_threads_change_nothing),
-		TEST(test_refuses_what_is_no_file),
-		TEST(test_refuses_wrong_sizes),
-		TEST(test_refuses_wrong_dimensions),
-		TEST(test_refuses_text),
-		TEST(test_names_foreign_files),
-		TEST(test_refuses_huge_file),
-		TEST(test_refuses_unreadable),
-		TEST(test_reading_goes_wrong),
-		TEST(test_reading_in_pieces),
-		TEST(test_odd_names),
-		TEST(test_atomic_commit),
-		TEST(test_atomic_abort),
-		TEST(test_atomic_names_do_not_clash),
-		TEST(test_atomic_follows_links),
-		TEST(test_atomic_leaves_special_files),
-		TEST(test_write_where_nothing_can_be),
-		TEST(test_write_without_permission),
-		TEST(test_write_over_read_only),
-		TEST(test_write_when_full),
-		TEST(test_rename_fails),
+		cmocka_unit_test(names_and_bins_are_inverse),
+		cmocka_unit_test(angles_of_bins_are_as_documented),
+		cmocka_unit_test(sines_and_cosines_of_bins_are_exact_at_the_ends),
+		cmocka_unit_test(entries_above_the_horizon_are_counted),
+		cmocka_unit_test(a_new_table_is_masked),
+		cmocka_unit_test(quoted_text_is_one_printable_line),
+		TEST(a_180_table_comes_back),
+		TEST(a_360_table_comes_back),
+		TEST(the_hash_is_that_of_the_bytes),
+		TEST(planes_lie_as_the_format_has_them),
+		TEST(negative_and_nonfinite_entries_are_masked_and_counted),
+		TEST(threads_change_nothing),
+		TEST(what_is_no_file_is_refused),
+		TEST(wrong_sizes_are_refused),
+		TEST(wrong_dimensions_are_refused),
+		TEST(text_is_refused),
+		TEST(foreign_files_are_named),
+		TEST(a_huge_file_is_refused),
+		TEST(an_unreadable_file_is_refused),
+		TEST(errors_while_reading_are_reported),
+		TEST(reading_in_pieces_gives_the_same),
+		TEST(odd_names_are_quoted),
+		TEST(a_commit_replaces_the_file),
+		TEST(an_abort_leaves_the_file),
+		TEST(temporary_names_do_not_clash),
+		TEST(links_are_followed),
+		TEST(special_files_are_left),
+		TEST(writing_where_nothing_can_be_is_refused),
+		TEST(writing_without_permission_is_refused),
+		TEST(a_read_only_file_is_replaced_or_refused),
+		TEST(a_full_disk_leaves_the_old_file),
+		TEST(a_failed_rename_leaves_the_old_file),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

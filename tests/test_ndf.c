@@ -297,7 +297,7 @@ static void check_masking(const struct ndf *ndf)
 	}
 }
 
-static void masking(void **state)
+static void masking_is_1_over_1_plus_Lambda(void **state)
 {
 	(void)state;
 	for_all(check_masking);
@@ -380,7 +380,7 @@ static void limits_are_reached(void **state)
 
 /* gtr is GGX at gamma = 2, its Lambda by quadrature. hyper-cauchy and t-family are std of another roughness, and to the
  * bit where that is the same. low with large C is Beckmann near the normal. */
-static void other_names(void **state)
+static void classes_that_are_others_renamed_have_their_values(void **state)
 {
 	(void)state;
 	for (double sigma = 1e-4; sigma < 5.0; sigma *= 2.9) {
@@ -438,14 +438,14 @@ static void check_quadrature(const struct ndf *ndf)
 	gsl_integration_workspace_free(workspace);
 }
 
-static void quadrature(void **state)
+static void G1_by_quadrature_matches_the_integral(void **state)
 {
 	(void)state;
 	for_all(check_quadrature);
 }
 
 /* No step where one formula hands over to the next: z = 0.8, and gamma = 33 for the ratio of Gamma functions. */
-static void seams(void **state)
+static void no_step_where_formulas_meet(void **state)
 {
 	(void)state;
 	const double gammas[] = {1.5001, 1.72, 2.5, 10.0, 1e3, 1e9, INFINITY};
@@ -479,7 +479,7 @@ static void check_corner(const struct ndf *ndf)
 	}
 }
 
-static void corners(void **state)
+static void corners_of_the_domain_stay_finite(void **state)
 {
 	(void)state;
 	const double sigmas[] = {NDF_SIGMA_MIN, 1e-20, 1.0, 1e20, NDF_SIGMA_MAX};
@@ -522,7 +522,7 @@ static const struct {
 	{"low", {-1.0, 1001.0, INFINITY, NAN, -INFINITY}},
 };
 
-static void domain(void **state)
+static void arguments_outside_the_domain_are_refused(void **state)
 {
 	(void)state;
 	const double bad_sigmas[] = {0.0, -0.1, NAN, INFINITY, -INFINITY, 1e-51, 1e51};
@@ -559,7 +559,7 @@ static void domain(void **state)
 	assert_memory_equal(&ndf, &before, sizeof(ndf));
 }
 
-static void table(void **state)
+static void every_class_is_found_by_its_name(void **state)
 {
 	(void)state;
 	int count = 0, tabulated = 0;
@@ -614,7 +614,7 @@ static void check_params(const struct ndf *ndf)
 	}
 }
 
-static void params(void **state)
+static void own_parameters_make_the_same_distribution(void **state)
 {
 	(void)state;
 	for_all(check_params);
@@ -696,17 +696,17 @@ int main(void)
 		cmocka_unit_test(values_match_golden_vectors),
 		cmocka_unit_test(D_is_normalised),
 		cmocka_unit_test(Lambda_is_the_integral_that_defines_it),
-		cmocka_unit_test(masking),
+		cmocka_unit_test(masking_is_1_over_1_plus_Lambda),
 		cmocka_unit_test(D_and_Lambda_are_symmetric),
 		cmocka_unit_test(ggx_is_std_2),
 		cmocka_unit_test(limits_are_reached),
-		cmocka_unit_test(other_names),
-		cmocka_unit_test(quadrature),
-		cmocka_unit_test(seams),
-		cmocka_unit_test(corners),
-		cmocka_unit_test(domain),
-		cmocka_unit_test(table),
-		cmocka_unit_test(params),
+		cmocka_unit_test(classes_that_are_others_renamed_have_their_values),
+		cmocka_unit_test(G1_by_quadrature_matches_the_integral),
+		cmocka_unit_test(no_step_where_formulas_meet),
+		cmocka_unit_test(corners_of_the_domain_stay_finite),
+		cmocka_unit_test(arguments_outside_the_domain_are_refused),
+		cmocka_unit_test(every_class_is_found_by_its_name),
+		cmocka_unit_test(own_parameters_make_the_same_distribution),
 		cmocka_unit_test(plain_is_the_same_distribution_by_another_name),
 		cmocka_unit_test(classes_that_are_Student_t_take_the_other_forms),
 	};

@@ -95,7 +95,7 @@ static void golden_rows(const char *ndf, const char *file, const char *names, co
 	csv_table_free(&table);
 }
 
-static void golden_values(void **state)
+static void values_match_golden_rows(void **state)
 {
 	(void)state;
 	golden_rows("std", "std_D.csv", "gamma,sigma,theta_deg,D", "gamma,sigma,theta", 3, 3, -1, -1);
@@ -112,7 +112,7 @@ static void same(const struct csv_table *table, size_t row, int column, double w
 }
 
 /* Every distribution and form, over all angles. */
-static void numbers_of_the_library(void **state)
+static void printed_values_are_those_of_the_library(void **state)
 {
 	static const struct {
 		const char *arguments, *ndf;
@@ -170,7 +170,7 @@ static void numbers_of_the_library(void **state)
 }
 
 /* params say what sigma and gamma cannot. */
-static void other_parameters(void **state)
+static void own_parameters_are_taken(void **state)
 {
 	struct csv_table table;
 	struct ndf ndf;
@@ -207,7 +207,7 @@ static void other_parameters(void **state)
 }
 
 /* pl from its values, which are normalised. */
-static void nodes(void **state)
+static void nodes_of_pl_are_normalised(void **state)
 {
 	char *command = NULL;
 	size_t size;
@@ -233,7 +233,7 @@ static void nodes(void **state)
 	csv_table_free(&table);
 }
 
-static void rows_and_bad_rows(void **state)
+static void rows_are_chosen_and_bad_rows_refused(void **state)
 {
 	(void)state;
 	write_text("in.csv", "theta,ndf,sigma,gamma,theta_i\n"
@@ -269,7 +269,7 @@ static void rows_and_bad_rows(void **state)
 	expect_code(1);
 }
 
-static void from_a_table(void **state)
+static void distributions_come_from_result_tables(void **state)
 {
 	(void)state;
 	stdfit("synth m.binary --kd 0.2 --ks 0.5 --sigma 0.2 --ndf ggx");
@@ -438,7 +438,7 @@ static void samples_follow_the_seed(void **state)
 	assert_int_equal(json_array_length(last.out), 5);
 }
 
-static void refusals(void **state)
+static void wrong_usage_is_refused(void **state)
 {
 	static const struct {
 		const char *arguments;
@@ -499,16 +499,16 @@ static int tear_down(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(golden_values),
-		cmocka_unit_test(numbers_of_the_library),
-		cmocka_unit_test(other_parameters),
-		cmocka_unit_test(nodes),
-		cmocka_unit_test(rows_and_bad_rows),
-		cmocka_unit_test(from_a_table),
+		cmocka_unit_test(values_match_golden_rows),
+		cmocka_unit_test(printed_values_are_those_of_the_library),
+		cmocka_unit_test(own_parameters_are_taken),
+		cmocka_unit_test(nodes_of_pl_are_normalised),
+		cmocka_unit_test(rows_are_chosen_and_bad_rows_refused),
+		cmocka_unit_test(distributions_come_from_result_tables),
 		cmocka_unit_test(samples_follow_their_density),
 		cmocka_unit_test(weights_add_up_to_the_albedo),
 		cmocka_unit_test(samples_follow_the_seed),
-		cmocka_unit_test(refusals),
+		cmocka_unit_test(wrong_usage_is_refused),
 	};
 
 	return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -4,7 +4,7 @@
 #include "src/ndf.h"
 #include <gsl/gsl_integration.h>
 
-static void golden_std(void **state)
+static void std_samples_match_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden =
@@ -122,7 +122,7 @@ static void expect(const struct ndf *ndf, const double edge[TILTS - 1], double w
 	gsl_integration_glfixed_table_free(points);
 }
 
-static void chi_square(void **state)
+static void samples_follow_D_cos(void **state)
 {
 	(void)state;
 	uint64_t seed = 20170402;
@@ -138,7 +138,7 @@ static void chi_square(void **state)
 }
 
 /* The comparison can tell: a roughness along one axis 10 % off, a shape 0.5 off. */
-static void chi_square_tells(void **state)
+static void chi_square_rejects_wrong_distributions(void **state)
 {
 	(void)state;
 	const double wrong[2][2] = {{0.33, 3.3}, {0.3, 2.8}};
@@ -160,7 +160,7 @@ static void chi_square_tells(void **state)
 }
 
 /* The share u2 of the normals lies below the tilt of u2: from the pdf alone, to many digits. */
-static void quantiles(void **state)
+static void tilts_invert_the_integral_of_the_pdf(void **state)
 {
 	(void)state;
 	gsl_integration_glfixed_table *points = gsl_integration_glfixed_table_alloc(12);
@@ -179,7 +179,7 @@ static void quantiles(void **state)
 }
 
 /* All four quadrants, and the azimuth that u1 asks for in stretched slopes. */
-static void quadrants(void **state)
+static void azimuths_fill_all_quadrants_evenly(void **state)
 {
 	(void)state;
 	for (int i = 0; i < ROWS; i++) {
@@ -196,8 +196,11 @@ static void quadrants(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(golden_std), cmocka_unit_test(chi_square), cmocka_unit_test(chi_square_tells),
-		cmocka_unit_test(quantiles),  cmocka_unit_test(quadrants),
+		cmocka_unit_test(std_samples_match_golden_rows),
+		cmocka_unit_test(samples_follow_D_cos),
+		cmocka_unit_test(chi_square_rejects_wrong_distributions),
+		cmocka_unit_test(tilts_invert_the_integral_of_the_pdf),
+		cmocka_unit_test(azimuths_fill_all_quadrants_evenly),
 	};
 	return cmocka_run_group_tests_name("ndf_sample", tests, NULL, NULL);
 }

@@ -21,7 +21,7 @@ static struct ndf ndf_make(const char *name, double sigma_x, double sigma_y, dou
 }
 
 /* sigma carries the rounding of 1/sqrt(B), which the power C multiplies. */
-static void golden_family(void **state)
+static void family_matches_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden = golden_open("tests/golden/general_family.csv", "B,C,theta_deg,q,D,P2,Lambda,G1");
@@ -43,7 +43,7 @@ static void golden_family(void **state)
 	}
 }
 
-static void golden_p2(void **state)
+static void P2_matches_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden = golden_open("tests/golden/p2.csv", "gamma,sigma,q,P2");
@@ -57,7 +57,7 @@ static void golden_p2(void **state)
 	}
 }
 
-static void golden_moments(void **state)
+static void moments_match_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden = golden_open("tests/golden/moments.csv", "B,C,nu0,nu2,nu4,nu6,nu8,excess_kurtosis");
@@ -77,7 +77,7 @@ static void golden_moments(void **state)
 	}
 }
 
-static void golden_gtr(void **state)
+static void gtr_matches_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden = golden_open("tests/golden/gtr_D.csv", "gamma,sigma,theta_deg,D");
@@ -136,7 +136,7 @@ static void check_P2(const struct ndf *ndf)
 	gsl_integration_workspace_free(workspace);
 }
 
-static void P2_from_P22(void **state)
+static void P2_is_the_integral_of_P22(void **state)
 {
 	(void)state;
 	for_all(check_P2);
@@ -164,13 +164,13 @@ static void check_moments(const struct ndf *ndf)
 	gsl_integration_workspace_free(workspace);
 }
 
-static void moments_from_P2(void **state)
+static void moments_are_integrals_of_P2(void **state)
 {
 	(void)state;
 	for_all(check_moments);
 }
 
-static void edges(void **state)
+static void moments_at_the_edges_are_their_limits(void **state)
 {
 	(void)state;
 	const struct ndf t3 = ndf_make("t-family", 0.4, 0.2, 3.0), gaussian = ndf_make("beckmann", 0.4, 0.4, NAN);
@@ -201,9 +201,13 @@ static void edges(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(golden_family), cmocka_unit_test(golden_p2),   cmocka_unit_test(golden_moments),
-		cmocka_unit_test(golden_gtr),    cmocka_unit_test(P2_from_P22), cmocka_unit_test(moments_from_P2),
-		cmocka_unit_test(edges),
+		cmocka_unit_test(family_matches_golden_rows),
+		cmocka_unit_test(P2_matches_golden_rows),
+		cmocka_unit_test(moments_match_golden_rows),
+		cmocka_unit_test(gtr_matches_golden_rows),
+		cmocka_unit_test(P2_is_the_integral_of_P22),
+		cmocka_unit_test(moments_are_integrals_of_P2),
+		cmocka_unit_test(moments_at_the_edges_are_their_limits),
 	};
 	gsl_set_error_handler_off();
 	return cmocka_run_group_tests_name("ndf_slopes", tests, NULL, NULL);

@@ -286,7 +286,7 @@ static void what_is_missing_is_told(void **state)
 	expect_error(1, "'gone/b.binary': it is not the file any more that was fitted");
 }
 
-static void no_gnuplot(void **state)
+static void without_gnuplot_one_line_says_so(void **state)
 {
 	(void)state;
 	shell("PATH=/nowhere exec \"$STDFIT\" plot fits.csv -o bare");
@@ -308,7 +308,7 @@ static void no_gnuplot(void **state)
 	expect_nothing_left();
 }
 
-static void wrong_input(void **state)
+static void wrong_input_is_refused(void **state)
 {
 	(void)state;
 	write_text("other.csv", "name,value\nx,1\n");
@@ -491,8 +491,8 @@ int main(void)
 		cmocka_unit_test(names_are_harmless_in_scripts),
 		cmocka_unit_test(a_table_becomes_pictures),
 		cmocka_unit_test(what_is_missing_is_told),
-		cmocka_unit_test(no_gnuplot),
-		cmocka_unit_test(wrong_input),
+		cmocka_unit_test(without_gnuplot_one_line_says_so),
+		cmocka_unit_test(wrong_input_is_refused),
 		cmocka_unit_test(a_trace_becomes_a_picture),
 		cmocka_unit_test(searches_of_a_fit_become_one_curve),
 		cmocka_unit_test(errors_are_sorted),

@@ -52,7 +52,7 @@ static const struct pwl *table_named(void **state, const char *name)
 	return &tables->pwl[i];
 }
 
-static void golden_D(void **state)
+static void D_matches_golden_rows(void **state)
 {
 	struct golden golden = golden_open("tests/golden/piecewise_linear_D.csv",
 					   "dist,theta_m_deg,phi_m_deg,D,cdf_phi,cdf_theta_given_phi");
@@ -66,7 +66,7 @@ static void golden_D(void **state)
 }
 
 /* The reference Lambda is 1/G1 - 1 with the 25 digits of its quadrature: below 1e-12 it has none left of its own. */
-static void golden_G1(void **state)
+static void G1_matches_golden_rows(void **state)
 {
 	struct golden golden =
 		golden_open("tests/golden/piecewise_linear_g1.csv", "dist,theta_o_deg,phi_o_deg,G1,Lambda");
@@ -90,7 +90,7 @@ static void golden_G1(void **state)
 }
 
 /* Against adaptive quadrature of the integral in pwl.h with 30 digits, at angles of every branch. */
-static void lambda_at_all_angles(void **state)
+static void Lambda_is_the_integral_at_all_angles(void **state)
 {
 	const struct {
 		const char *name;
@@ -165,7 +165,7 @@ static double two_lobes(struct vec3 m, const void *context)
 	return pow(m.z, power[m.y != 0.0]);
 }
 
-static void from_function(void **state)
+static void nodes_of_a_function_blend_as_eq_1(void **state)
 {
 	(void)state;
 	double theta[31];
@@ -230,7 +230,7 @@ static double D_seen(const struct pwl *pwl, struct vec3 o, struct vec3 m)
 	return pwl_D(pwl, m) * fmax(0.0, vec3_dot(o, m));
 }
 
-static void integrals(void **state)
+static void D_and_visible_area_integrate_to_theirs(void **state)
 {
 	const struct tables *tables = *state;
 	gsl_integration_glfixed_table *table = gsl_integration_glfixed_table_alloc(4);
@@ -325,7 +325,7 @@ static void samples_invert_the_cdfs(void **state)
 	}
 }
 
-static void edges(void **state)
+static void edges_give_their_limits(void **state)
 {
 	const struct tables *tables = *state;
 	for (int i = 0; i < TABLES; i++) {
@@ -348,7 +348,7 @@ static void edges(void **state)
 }
 
 /* One peak of 10^-4 rad, all the rest empty. */
-static void empty_segments(void **state)
+static void samples_avoid_empty_segments(void **state)
 {
 	(void)state;
 	const double theta[] = {0.0, 0.4, 0.5, 0.5001, 0.5002, 0.9, 1.5, M_PI_2};
@@ -373,7 +373,7 @@ static void refuse_table(int n, const double *theta, const double *Dx, const dou
 	pwl_free(&pwl);
 }
 
-static void refuses(void **state)
+static void wrong_nodes_are_refused(void **state)
 {
 	(void)state;
 	const double theta[] = {0.0, 0.7, M_PI_2}, D[] = {1.0, 0.5, 0.2};
@@ -416,18 +416,18 @@ static void refuses(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(golden_D),
-		cmocka_unit_test(golden_G1),
-		cmocka_unit_test(lambda_at_all_angles),
+		cmocka_unit_test(D_matches_golden_rows),
+		cmocka_unit_test(G1_matches_golden_rows),
+		cmocka_unit_test(Lambda_is_the_integral_at_all_angles),
 		cmocka_unit_test(refined_becomes_its_source),
-		cmocka_unit_test(from_function),
-		cmocka_unit_test(integrals),
+		cmocka_unit_test(nodes_of_a_function_blend_as_eq_1),
+		cmocka_unit_test(D_and_visible_area_integrate_to_theirs),
 		cmocka_unit_test(samples_follow_D_cos),
 		cmocka_unit_test(sampled_weight_is_the_seen_area),
 		cmocka_unit_test(samples_invert_the_cdfs),
-		cmocka_unit_test(edges),
-		cmocka_unit_test(empty_segments),
-		cmocka_unit_test(refuses),
+		cmocka_unit_test(edges_give_their_limits),
+		cmocka_unit_test(samples_avoid_empty_segments),
+		cmocka_unit_test(wrong_nodes_are_refused),
 	};
 	return cmocka_run_group_tests_name("pwl", tests, setup, teardown);
 }

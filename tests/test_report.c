@@ -132,7 +132,7 @@ static void a_table_becomes_a_page(void **state)
 	expect_in_page(page, "Mean CIEDE2000 and SSIM: beckmann ", image_has_png());
 }
 
-static void in_a_browser(void **state)
+static void a_browser_shows_it_without_errors(void **state)
 {
 	(void)state;
 	if (!have_gnuplot() || access("odd/index.html", F_OK))
@@ -199,7 +199,7 @@ static void what_is_missing_is_told(void **state)
 	expect_in_page("three/index.html", "no fit</span>", true);
 }
 
-static void wrong_input(void **state)
+static void wrong_input_is_refused(void **state)
 {
 	(void)state;
 	write_text("other.csv", "name,value\nx,1\n");
@@ -272,11 +272,11 @@ int main(void)
 		cmocka_unit_test(any_text_is_text),
 		cmocka_unit_test(files_become_base64),
 		cmocka_unit_test(a_table_becomes_a_page),
-		cmocka_unit_test(in_a_browser),
+		cmocka_unit_test(a_browser_shows_it_without_errors),
 		cmocka_unit_test(files_are_fitted_first),
 		cmocka_unit_test(without_gnuplot),
 		cmocka_unit_test(what_is_missing_is_told),
-		cmocka_unit_test(wrong_input),
+		cmocka_unit_test(wrong_input_is_refused),
 		cmocka_unit_test(an_interrupt_leaves_the_old_page),
 	};
 	return cmocka_run_group_tests_name("report", tests, set_up, tear_down);

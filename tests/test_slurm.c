@@ -191,7 +191,7 @@ static void expect_whole(const char *path)
 	free(found);
 }
 
-static void an_array_and_a_merge(void **state)
+static void an_array_and_a_merge_make_the_whole(void **state)
 {
 	(void)state;
 	if (!slurm_is_installed())
@@ -224,7 +224,7 @@ static void an_array_and_a_merge(void **state)
 	expect_whole("again.csv");
 }
 
-static void slurm_fit_usage(void **state)
+static void slurm_fit_refuses_wrong_usage(void **state)
 {
 	(void)state;
 	static const struct {
@@ -259,7 +259,7 @@ static void slurm_fit_usage(void **state)
 }
 
 /* As docs/robustness.md has it, but for the way to the other machines. */
-static void parallel_over_ssh(void **state)
+static void parallel_over_ssh_makes_the_whole(void **state)
 {
 	(void)state;
 	shell("command -v parallel && parallel --version | grep -q GNU");
@@ -281,9 +281,9 @@ static void parallel_over_ssh(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(an_array_and_a_merge),
-		cmocka_unit_test(slurm_fit_usage),
-		cmocka_unit_test(parallel_over_ssh),
+		cmocka_unit_test(an_array_and_a_merge_make_the_whole),
+		cmocka_unit_test(slurm_fit_refuses_wrong_usage),
+		cmocka_unit_test(parallel_over_ssh_makes_the_whole),
 	};
 	return cmocka_run_group_tests(tests, set_up, tear_down);
 }

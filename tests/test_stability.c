@@ -62,7 +62,7 @@ static void check_ndf(const struct ndf *ndf, const char *label)
 	}
 }
 
-static void distributions(void **state)
+static void extreme_distributions_stay_finite(void **state)
 {
 	(void)state;
 	for (int d = 0; ndf_at(d); d++) {
@@ -86,7 +86,7 @@ static void distributions(void **state)
 }
 
 /* The whole lobe over pairs of extreme directions: finite, not negative, the same both ways. */
-static void lobes(void **state)
+static void extreme_lobes_stay_finite_and_reciprocal(void **state)
 {
 	(void)state;
 	static const double azimuth[] = {0.0, M_PI, 1.1};
@@ -115,7 +115,7 @@ static void lobes(void **state)
 }
 
 /* G1 and G underflow long before G/(cos_i cos_o) D does. */
-static void grazing_lobe(void **state)
+static void a_lobe_outlives_the_underflow_of_G(void **state)
 {
 	(void)state;
 	const struct cook_torrance model = {.ndf = make_ndf("std", 1e4, 5.3), .fresnel = FRESNEL_NONE};
@@ -124,7 +124,7 @@ static void grazing_lobe(void **state)
 }
 
 /* References by tests/high_precision.h. */
-static void large_gamma(void **state)
+static void large_gamma_matches_references(void **state)
 {
 	(void)state;
 	const struct ndf ndf = make_ndf("std", 1e-4, 9.99e17), rough = make_ndf("std", 4.0, 9.99e17);
@@ -138,7 +138,7 @@ static void large_gamma(void **state)
 	}
 }
 
-static void low_far_tail(void **state)
+static void the_far_tail_of_low_keeps_its_digits(void **state)
 {
 	(void)state;
 	static const double value[] = {1e14, 2.0};
@@ -148,7 +148,7 @@ static void low_far_tail(void **state)
 }
 
 /* (1 - 1/gamma)/(2 - 3/gamma) once lost all digits at gamma 1.5. */
-static void rational_near_its_pole(void **state)
+static void rational_form_keeps_its_digits_near_its_pole(void **state)
 {
 	(void)state;
 	struct ndf ndf = make_ndf("std", 1e-7, 0x1.8000000000001p0);
@@ -157,7 +157,7 @@ static void rational_near_its_pole(void **state)
 	check_rel(ndf_G1(&ndf, w), 1.0 / (1.0 + 506833028245090296.91), 0.0072, "rational G1");
 }
 
-static void fresnel_edges(void **state)
+static void fresnel_raises_no_exception_at_its_edges(void **state)
 {
 	(void)state;
 	static const double cosine[] = {DBL_TRUE_MIN, 1e-300, 0.3, 1.0};
@@ -171,7 +171,7 @@ static void fresnel_edges(void **state)
 	}
 }
 
-static void ellipsoid_by_the_normal(void **state)
+static void ellipsoid_takes_a_denormal_tilt(void **state)
 {
 	(void)state;
 	struct ellipsoid e;
@@ -181,7 +181,7 @@ static void ellipsoid_by_the_normal(void **state)
 }
 
 /* All the mass in the first segment: whatever the numbers, samples stay there. */
-static void spike(void **state)
+static void samples_of_a_spike_stay_in_it(void **state)
 {
 	(void)state;
 	enum { NODES = 91 };
@@ -202,7 +202,7 @@ static void spike(void **state)
 }
 
 /* The error of a table of the largest floats is what it is for moderate ones: no kd or ks can do anything. */
-static void float_range(void **state)
+static void E_is_right_over_the_range_of_floats(void **state)
 {
 	(void)state;
 	static const float scale[] = {1e-45f, 1e-41f, 1e25f, 1e38f, FLT_MAX};
@@ -238,11 +238,16 @@ static void float_range(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(distributions), cmocka_unit_test(lobes),
-		cmocka_unit_test(grazing_lobe),  cmocka_unit_test(large_gamma),
-		cmocka_unit_test(low_far_tail),  cmocka_unit_test(rational_near_its_pole),
-		cmocka_unit_test(fresnel_edges), cmocka_unit_test(ellipsoid_by_the_normal),
-		cmocka_unit_test(spike),         cmocka_unit_test(float_range),
+		cmocka_unit_test(extreme_distributions_stay_finite),
+		cmocka_unit_test(extreme_lobes_stay_finite_and_reciprocal),
+		cmocka_unit_test(a_lobe_outlives_the_underflow_of_G),
+		cmocka_unit_test(large_gamma_matches_references),
+		cmocka_unit_test(the_far_tail_of_low_keeps_its_digits),
+		cmocka_unit_test(rational_form_keeps_its_digits_near_its_pole),
+		cmocka_unit_test(fresnel_raises_no_exception_at_its_edges),
+		cmocka_unit_test(ellipsoid_takes_a_denormal_tilt),
+		cmocka_unit_test(samples_of_a_spike_stay_in_it),
+		cmocka_unit_test(E_is_right_over_the_range_of_floats),
 	};
 	return cmocka_run_group_tests_name("stability", tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fits of hard tables, made in memory: each ends after a bounded number of looks, below every simpler model, and says what
+/* Fits of hard tables, made in memory: each ends after a bounded number of evaluations, below every simpler model, and says what
  * it cannot know. Every twelfth phi_d stands for all of them. Some cases are left out unless the environment has
  * STDFIT_STABILITY=1: then random starts must find nothing better, either, and it takes minutes. */
 #include "check.h"
@@ -319,7 +319,7 @@ static void check_simpler(const struct stiff *stiff, const struct measurement *m
 	check_between(error - error_with(measurement, &other), -INFINITY, search_end(error), label);
 }
 
-static void stiff_tables(void **state)
+static void stiff_tables_end_at_their_minimum(void **state)
 {
 	(void)state;
 	for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
@@ -357,7 +357,7 @@ static void stiff_tables(void **state)
 }
 
 /* One value next to the largest float: no metric overflows. */
-static void the_largest_value(void **state)
+static void the_largest_value_overflows_no_metric(void **state)
 {
 	const struct fit_options options = fit_options_default();
 	const struct cook_torrance model = model_of("ggx", 0.3, 2, 1.5, 0, 0);
@@ -387,7 +387,7 @@ static double faint(double value, double random)
 }
 
 /* A table times 2^-70 has the same E, by kd and ks that are as much smaller. */
-static void any_unit_of_the_data(void **state)
+static void the_unit_of_the_data_changes_nothing(void **state)
 {
 	struct fit_options options = options_for("ggx");
 	struct measurement measurement = noise();
@@ -408,7 +408,7 @@ static void any_unit_of_the_data(void **state)
 }
 
 /* Half of the values move to the next float. */
-static void a_rounding_of_the_data(void **state)
+static void a_rounding_of_the_data_changes_nothing(void **state)
 {
 	const struct fit_options options = options_for("ggx");
 	struct measurement measurement = noise();
@@ -449,10 +449,10 @@ static void only_what_is_free_is_named(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(stiff_tables),
-		cmocka_unit_test(a_rounding_of_the_data),
-		cmocka_unit_test(the_largest_value),
-		cmocka_unit_test(any_unit_of_the_data),
+		cmocka_unit_test(stiff_tables_end_at_their_minimum),
+		cmocka_unit_test(a_rounding_of_the_data_changes_nothing),
+		cmocka_unit_test(the_largest_value_overflows_no_metric),
+		cmocka_unit_test(the_unit_of_the_data_changes_nothing),
 		cmocka_unit_test(only_what_is_free_is_named),
 	};
 

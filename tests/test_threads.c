@@ -35,7 +35,7 @@ static void check_same(const struct fit_result *got, const struct fit_result *wa
 }
 
 /* With random starts, so that the random numbers of one must not depend on the other. */
-static void two_at_once(void **state)
+static void two_fits_at_once_give_what_each_gives_alone(void **state)
 {
 	(void)state;
 	const struct cook_torrance model[JOBS] = {make_model("std", 0.3, 2.2, 1.5), make_model("ggx", 0.15, 2, 1.9)};
@@ -76,7 +76,7 @@ static void two_at_once(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(two_at_once),
+		cmocka_unit_test(two_fits_at_once_give_what_each_gives_alone),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,7 +4,7 @@
 #include "make_table.h"
 #include "run_fit.h"
 
-static void the_end_is_reached(void **state)
+static void the_end_of_a_flat_valley_is_reached(void **state)
 {
 	const struct cook_torrance m = make_model("std", 0.19, 2.2, 1.006);
 	const struct fit_options options = options_for("std");
@@ -23,7 +23,7 @@ static void the_end_is_reached(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(the_end_is_reached),
+		cmocka_unit_test(the_end_of_a_flat_valley_is_reached),
 	};
 
 	return cmocka_run_group_tests_name("valley", tests, NULL, NULL);

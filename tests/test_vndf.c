@@ -12,7 +12,7 @@ static struct ndf ndf_make(const char *name, double sigma_x, double sigma_y, dou
 	return ndf;
 }
 
-static void golden_pdf(void **state)
+static void pdf_matches_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden =
@@ -33,7 +33,7 @@ static void golden_pdf(void **state)
 	assert_in_range(seen, 100, 10000);
 }
 
-static void golden_slopes(void **state)
+static void slopes_match_golden_rows(void **state)
 {
 	(void)state;
 	struct golden golden = golden_open("tests/golden/vndf_sample11.csv",
@@ -262,7 +262,7 @@ static void slopes_across_invert_their_cdf(void **state)
 }
 
 /* Towards the end of the weight the mass left is that of a linear weight. */
-static void quantiles_near_the_end(void **state)
+static void quantiles_near_the_end_have_a_linear_weight(void **state)
 {
 	(void)state;
 	const double gammas[] = {1.6, 3.0, 20.0};
@@ -322,7 +322,7 @@ static void maps_increase(void **state)
 	}
 }
 
-static void extremes(void **state)
+static void extreme_shapes_give_unit_vectors(void **state)
 {
 	(void)state;
 	const double gammas[] = {1.5 + 1e-12, 1.5001, 1.7, 2.0, 3.0, 50.0, 1e9, 1e16, INFINITY};
@@ -352,7 +352,7 @@ static void extremes(void **state)
 	}
 }
 
-static void edges(void **state)
+static void edges_give_their_limits(void **state)
 {
 	(void)state;
 	const struct ndf ndf = ndf_make("std", 0.5, 0.5, 3.0);
@@ -430,7 +430,7 @@ static void weights_give_the_albedo(void **state)
 		assert_in_range(used[i], 1, 100);
 }
 
-static void pseudo_thresholds(void **state)
+static void pseudo_sampling_switches_at_its_thresholds(void **state)
 {
 	(void)state;
 	const struct {
@@ -452,19 +452,19 @@ static void pseudo_thresholds(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(golden_pdf),
-		cmocka_unit_test(golden_slopes),
+		cmocka_unit_test(pdf_matches_golden_rows),
+		cmocka_unit_test(slopes_match_golden_rows),
 		cmocka_unit_test(samples_follow_pdf),
 		cmocka_unit_test(pdf_integrates_to_one),
 		cmocka_unit_test(quantiles_invert_the_cdf),
 		cmocka_unit_test(slopes_across_invert_their_cdf),
-		cmocka_unit_test(quantiles_near_the_end),
+		cmocka_unit_test(quantiles_near_the_end_have_a_linear_weight),
 		cmocka_unit_test(std_at_2_is_ggx),
 		cmocka_unit_test(maps_increase),
-		cmocka_unit_test(extremes),
-		cmocka_unit_test(edges),
+		cmocka_unit_test(extreme_shapes_give_unit_vectors),
+		cmocka_unit_test(edges_give_their_limits),
 		cmocka_unit_test(weights_give_the_albedo),
-		cmocka_unit_test(pseudo_thresholds),
+		cmocka_unit_test(pseudo_sampling_switches_at_its_thresholds),
 	};
 	return cmocka_run_group_tests_name("vndf", tests, NULL, NULL);
 }

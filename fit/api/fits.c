@@ -54,8 +54,7 @@ static enum stdfit_status read_ndfs(const char *names, struct fit_options *inner
 			return api_fail(error, STATUS_DOMAIN, "ndfs: expected at most %d", FIT_NDFS_MAX);
 		inner->ndf[inner->n_ndf] = ndf_find(name);
 		if (!inner->ndf[inner->n_ndf++])
-			return api_fail(error, STATUS_DOMAIN, "ndfs: there is none called '%.*s'",
-					length < 100 ? (int)length : 100, at);
+			return api_unknown(error, "ndfs", length < sizeof name ? name : at);
 		at = at[length] ? at + length + 1 : NULL;
 	}
 	return STDFIT_OK;
@@ -226,8 +225,12 @@ static enum stdfit_status check_fit(const stdfit_context *context, const stdfit_
 				    const struct stdfit_options *options, struct fit_options *inner,
 				    struct stdfit_error *error)
 {
+	struct error why;
+
 	if (!context || !measurement)
 		return api_fail(error, STATUS_DOMAIN, "%s is NULL", context ? "measurement" : "context");
+	if (measurement_require_table(&measurement->grid, "the fit", &why) != STATUS_OK)
+		return api_end(error, STATUS_UNSUPPORTED, &why);
 	return read_options(options, inner, error);
 }
 
@@ -295,7 +298,10 @@ enum stdfit_status stdfit_compare(const stdfit_measurement *measurement, const s
 		status = api_fail(error, STATUS_DOMAIN, "measurement or metrics is NULL");
 	if (status != STDFIT_OK)
 		return status;
-	const enum status end = fit_eval(&measurement->grid, &inner_model, &inner, &m, &why);
+	enum status end = measurement_require_table(&measurement->grid, "the comparison", &why);
+
+	if (end == STATUS_OK)
+		end = fit_eval(&measurement->grid, &inner_model, &inner, &m, &why);
 
 	if (end == STATUS_OK)
 		*metrics = public_metrics(&m);

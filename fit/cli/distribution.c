@@ -120,7 +120,7 @@ static enum status make_ellipsoid(const struct distribution_words *words, double
 	distribution->is_ellipsoid = true;
 	const double radians = M_PI / 180;
 	return ellipsoid_init_angles(&distribution->ellipsoid, value[0], value[1], value[2] * radians,
-				     value[3] * radians, value[4] * radians)
+				     value[3] * radians, value[4] * radians) != STATUS_OK
 		       ? does_not_take("ellipsoid", error)
 		       : STATUS_OK;
 }
@@ -147,7 +147,7 @@ static enum status from_params(const struct distribution_words *words, const str
 		if (isnan(value[i]))
 			return error_set(error, STATUS_DOMAIN, "%s needs %s", ndf_name(class), param->name);
 	}
-	return ndf_init_params(ndf, class, value) ? refuse_params(class, value, error) : STATUS_OK;
+	return ndf_init_params(ndf, class, value) != STATUS_OK ? refuse_params(class, value, error) : STATUS_OK;
 }
 
 /* The same for the words sigma, sigma_y and gamma, which is C of low. */
@@ -181,16 +181,17 @@ static enum status make_class(const struct distribution_words *words, const stru
 	if (sigma_x != sigma_y && !ndf_has_anisotropy(class))
 		return error_set(error, STATUS_DOMAIN, "%s takes one sigma, the same in all directions",
 				 ndf_name(class));
-	return ndf_init(ndf, class, sigma_x, sigma_y, gamma) ? refuse_words(class, sigma_x, sigma_y, gamma, error)
-							     : STATUS_OK;
+	return ndf_init(ndf, class, sigma_x, sigma_y, gamma) != STATUS_OK
+		       ? refuse_words(class, sigma_x, sigma_y, gamma, error)
+		       : STATUS_OK;
 }
 
 static enum status set_lambda(const char *word, struct ndf *ndf, struct error *error)
 {
 	enum lambda_form form = LAMBDA_EXACT;
-	if (given(word) && lambda_form_find(word, &form))
+	if (given(word) && lambda_form_find(word, &form) != STATUS_OK)
 		return error_set(error, STATUS_DOMAIN, "there is no form of Lambda of that name");
-	if (form == LAMBDA_EXACT || !ndf_set_lambda_form(ndf, form))
+	if (form == LAMBDA_EXACT || ndf_set_lambda_form(ndf, form) == STATUS_OK)
 		return STATUS_OK;
 	return error_set(error, STATUS_DOMAIN, "%s has no Lambda %s, or not at this gamma", ndf_name(ndf->class), word);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/cli/files.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/messages.h"
 
@@ -29,9 +30,7 @@ static bool files_add(struct files *files, const char *path)
 
 static bool is_material(const char *name)
 {
-	static const char suffix[] = ".binary";
-	const size_t length = strlen(name), n = sizeof suffix - 1;
-	return name[0] != '.' && length > n && !strcasecmp(name + length - n, suffix);
+	return name[0] != '.' && measurement_extension(name);
 }
 
 /* A file or directory by what it is, not by its name. */
@@ -157,7 +156,7 @@ static bool walk_entry(struct walk *walk, const char *path, const char *name)
 		const int is_new = walk->recursive ? seen_add(&walk->seen, &info) : 0;
 		return is_new > 0 ? walk_directory(walk, path) : is_new == 0;
 	}
-	if (is_material(name))
+	if (is_material(name) && measurement_is_known(path))
 		return files_add(walk->files, path);
 	/* It may be a directory, unless it is a link that leads nowhere. */
 	if (!known && errno != ENOENT && errno != ELOOP)
@@ -205,8 +204,8 @@ static int add_directory(struct files *files, const char *path, const struct sta
 	if (stored && !walk.problems && files->n == before && !*cancel) {
 		const bool below = !recursive && has_files_below(path, info, cancel);
 		walk_problem(&walk, path,
-			     below ? "no *.binary in this directory itself: -r takes those in the directories below"
-				   : "no *.binary in this directory");
+			     below ? "no measurement in this directory itself: -r takes those in the directories below"
+				   : "no measurement in this directory");
 	}
 	return stored ? walk.problems : -1;
 }

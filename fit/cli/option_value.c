@@ -18,6 +18,7 @@
 #define INFO (1u << COMMAND_INFO)
 #define SYNTH (1u << COMMAND_SYNTH)
 #define EXPORT (1u << COMMAND_EXPORT)
+#define CONVERT (1u << COMMAND_CONVERT)
 #define NDF (1u << COMMAND_NDF)
 #define SAMPLE (1u << COMMAND_SAMPLE)
 #define PLOT (1u << COMMAND_PLOT)
@@ -54,8 +55,8 @@ const struct option_spec option_specs[] = {
 	{"recursive", 'r', KIND_ON, FITS | MERGE | RENDER, NOT_RECORDED, NULL,
 	 "directories: take the files below them too", AT(recursive), 0, 0},
 	{"quiet", 'q', KIND_ON, SEARCHES | RENDER, NOT_RECORDED, NULL, "no progress line, no summary", AT(quiet), 0, 0},
-	{"quiet", 'q', KIND_ON, EXPORT, NOT_RECORDED, NULL, "no words but errors", AT(quiet), 0, 0},
-	{"threads", 0, KIND_INT, SEARCHES | MODEL | SOURCES, NOT_RECORDED, "N", "threads; changes no result",
+	{"quiet", 'q', KIND_ON, EXPORT | CONVERT, NOT_RECORDED, NULL, "no words but errors", AT(quiet), 0, 0},
+	{"threads", 0, KIND_INT, SEARCHES | MODEL | SOURCES | CONVERT, NOT_RECORDED, "N", "threads; changes no result",
 	 AT(fit.threads), 1, FIT_THREADS_MAX},
 	{"ndf", 0, KIND_NDFS, FITS | RENDER, RECORDED_WITHIN, "LIST", "NDFs to fit, separated by commas", AT(fit.ndf),
 	 0, 0},
@@ -68,11 +69,17 @@ const struct option_spec option_specs[] = {
 	 0},
 	{"weight", 0, KIND_WEIGHT, SEARCHES | SOURCES, RECORDED, "NAME", "how an entry counts in the error",
 	 AT(fit.criterion.weight), 0, 0},
-	{"bins", 0, KIND_BINS, SEARCHES | MODEL | SOURCES | INFO, RECORDED, "NAME",
+	{"bins", 0, KIND_BINS, SEARCHES | MODEL | SOURCES | INFO | CONVERT, RECORDED, "NAME",
 	 "where the entries of a table stand", AT(fit.criterion.bins), 0, 0},
+	{"quantity", 0, KIND_QUANTITY, SEARCHES | EVAL | SOURCES | INFO | CONVERT, RECORDED_GIVEN, "NAME",
+	 "what the numbers of the file are, whatever it says: the BRDF (1/sr), times cos theta_o, or times pi",
+	 AT(quantity), 0, 0},
+	{"gamut", 0, KIND_GAMUT, SEARCHES | EVAL | SOURCES | INFO | CONVERT, RECORDED_GIVEN, "NAME",
+	 "a colour of a spectrum that has a negative part in linear sRGB: set that to 0, or leave the entry out",
+	 AT(gamut), 0, 0},
 	{"max-theta", 0, KIND_NUMBER, SEARCHES | EVAL | SOURCES, RECORDED, "DEG",
 	 "leave out entries whose theta_i or theta_o exceeds this", AT(fit.criterion.max_theta), 1, 90},
-	{"zero-is-missing", 0, KIND_ON, SEARCHES | EVAL | SOURCES, RECORDED_IF_ON, NULL,
+	{"zero-is-missing", 0, KIND_ON, SEARCHES | EVAL | SOURCES, RECORDED_GIVEN, NULL,
 	 "leave out entries that are 0 in all channels: holes that were stored as 0 instead of -1",
 	 AT(fit.criterion.zero_is_missing), 0, 0},
 	{"unbounded", 0, KIND_ON, SEARCHES | SOURCES, RECORDED, NULL, "kd and ks may exceed 1", AT(fit.unbounded), 0,
@@ -130,7 +137,7 @@ const struct option_spec option_specs[] = {
 	 0, 0},
 	{"row", 0, KIND_INT, EVAL | SOURCES | NDF | SAMPLE, NOT_RECORDED, "N", "take row N of --from, counted from 1",
 	 AT(row), 1, INT_MAX},
-	{"phi", 0, KIND_PHI, SYNTH, NOT_RECORDED, "180|360", "entries along phi_d", AT(n_phi_d), 0, 0},
+	{"phi", 0, KIND_PHI, SYNTH | CONVERT, NOT_RECORDED, "180|360", "entries along phi_d", AT(n_phi_d), 0, 0},
 	{"noise", 0, KIND_NUMBER, SYNTH, NOT_RECORDED, "REL", "standard deviation of a factor 1 + noise on each value",
 	 AT(noise), 0, 10},
 	{"seed", 0, KIND_SEED, SYNTH, NOT_RECORDED, "N", "seed of the noise", AT(fit.seed), 0, 0},
@@ -196,6 +203,10 @@ const char *option_choice(enum option_kind kind, int i)
 		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
 	case KIND_BINS:
 		return i < BINS_COUNT ? bins_name((enum bins)i) : NULL;
+	case KIND_QUANTITY:
+		return i < QUANTITY_COUNT ? quantity_name((enum quantity)i) : NULL;
+	case KIND_GAMUT:
+		return i < GAMUT_COUNT ? gamut_name((enum gamut)i) : NULL;
 	case KIND_PHI:
 		return i < 2 ? (i ? "360" : "180") : NULL;
 	case KIND_SAMPLING:
@@ -221,6 +232,10 @@ static enum status choice_find(enum option_kind kind, const char *text, void *va
 		return fresnel_find(text, value);
 	case KIND_WEIGHT:
 		return weight_find(text, value);
+	case KIND_QUANTITY:
+		return quantity_find(text, value);
+	case KIND_GAMUT:
+		return gamut_find(text, value);
 	case KIND_SAMPLING:
 		return sampling_find(text, value);
 	case KIND_FORMAT:
@@ -296,8 +311,8 @@ static enum status parse_shard(const struct option_spec *spec, const char *text,
 	struct shard found = {0};
 	const size_t length = strcspn(text, "/");
 	snprintf(number, sizeof number, "%.*s", (int)(length % sizeof number), text);
-	if (length >= sizeof number || !text[length] || parse_int(spec, number, &found.i, NULL) ||
-	    parse_int(spec, text + length + 1, &found.n, NULL) || found.i > found.n)
+	if (length >= sizeof number || !text[length] || parse_int(spec, number, &found.i, NULL) != STATUS_OK ||
+	    parse_int(spec, text + length + 1, &found.n, NULL) != STATUS_OK || found.i > found.n)
 		return error_set(error, STATUS_DOMAIN, "expected I/N, share I of N, as 1/4 to 4/4; N at most %g",
 				 spec->max);
 	*shard = found;
@@ -328,7 +343,7 @@ static enum status parse_rgb(const struct option_spec *spec, const char *text, d
 	int n = 0;
 	for (const char *rest = text; rest; n++) {
 		rest = next_item(rest, item, sizeof item);
-		if (n == 3 || parse_number(spec, item, &rgb[n], NULL))
+		if (n == 3 || parse_number(spec, item, &rgb[n], NULL) != STATUS_OK)
 			return error_set(error, STATUS_DOMAIN, "expected R,G,B or one number, each from %g to %g",
 					 spec->min, spec->max);
 	}
@@ -377,7 +392,7 @@ static enum status parse_algorithms(const char *text, struct options *options, s
 	for (const char *rest = text; rest; n++) {
 		const struct algorithm *algorithm;
 		rest = next_item(rest, name, sizeof name);
-		if (algorithm_find(name, &algorithm))
+		if (algorithm_find(name, &algorithm) != STATUS_OK)
 			return expected_choice(KIND_ALGORITHMS, error);
 		for (int i = 0; i < n; i++)
 			if (options->algorithm[i] == algorithm)
@@ -420,7 +435,8 @@ enum status option_parse(struct options *options, const struct option_spec *spec
 	case KIND_ALGORITHMS:
 		return parse_algorithms(text, options, error);
 	default:
-		return choice_find(spec->kind, text, value) ? expected_choice(spec->kind, error) : STATUS_OK;
+		return choice_find(spec->kind, text, value) != STATUS_OK ? expected_choice(spec->kind, error)
+									 : STATUS_OK;
 	}
 }
 
@@ -484,6 +500,12 @@ void option_write(FILE *file, const struct options *options, const struct option
 		break;
 	case KIND_BINS:
 		fputs(bins_name(*(const enum bins *)value), file);
+		break;
+	case KIND_QUANTITY:
+		fputs(quantity_name(*(const enum quantity *)value), file);
+		break;
+	case KIND_GAMUT:
+		fputs(gamut_name(*(const enum gamut *)value), file);
 		break;
 	case KIND_SAMPLING:
 		fputs(sampling_name(*(const enum sampling *)value), file);

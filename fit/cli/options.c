@@ -70,6 +70,11 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "Draws normals m, visible or all, with their density. With --theta-i also the direction wo into\n"
 		 "which each reflects, its density, and its weight: the mean of the weights is the directional\n"
 		 "albedo of the lobe without its Fresnel term.\n"},
+	[COMMAND_CONVERT] =
+		{"convert", "IN OUT", "a measurement as CSV of samples or as a MERL file",
+		 "Writes a measurement of any format as OUT.csv, samples in linear sRGB or gray with the solid angle\n"
+		 "that each stands for, or as OUT.binary, a MERL file: interpolated, -1 where nothing was measured,\n"
+		 "with the mean of both orders of wi and wo unless --phi 360. One line tells what was lost.\n"},
 	[COMMAND_SYNTH] = {"synth", "OUT.binary", "write a MERL file of a model",
 			   "Writes the table that an ideal measurement of the model would give; -1 below the\n"
 			   "horizon.\n"},
@@ -106,13 +111,18 @@ static bool is_recorded(const struct options *options, const struct option_spec 
 		return true;
 	case RECORDED_WITHIN:
 		return !isnan(options->within);
-	case RECORDED_IF_ON:
-		return *(const bool *)((const char *)options + spec->offset);
+	case RECORDED_GIVEN:
+		return options->given[spec - option_specs];
 	case RECORDED_ALGORITHM:
 		return options->fit.algorithm;
 	default:
 		return false;
 	}
+}
+
+struct read_options options_reading(const struct options *options, int threads)
+{
+	return (struct read_options){.threads = threads, .quantity = options->quantity, .gamut = options->gamut};
 }
 
 char *options_text(const struct options *options)
@@ -255,7 +265,7 @@ static int take_option(struct options *options, int i, const char *text)
 {
 	struct error error;
 	options->given[i] = true;
-	if (!option_parse(options, &option_specs[i], text, &error))
+	if (option_parse(options, &option_specs[i], text, &error) == STATUS_OK)
 		return -1;
 	char shown[TEXT_QUOTE_SIZE];
 	text_quote(text, shown, sizeof shown);
@@ -446,7 +456,7 @@ int options_model(const struct options *options, struct cook_torrance *model)
 	memcpy(model->ks, options->ks, sizeof model->ks);
 	const double sigma = isnan(fit->sigma) ? 1 : fit->sigma, gamma = isnan(fit->gamma) ? 2 : fit->gamma;
 	const struct shape shape = {.sigma = sigma, .gamma = gamma};
-	if (shape_ndf(&shape, fit->ndf[0], fit->lambda, &model->ndf))
+	if (shape_ndf(&shape, fit->ndf[0], fit->lambda, &model->ndf) != STATUS_OK)
 		return options_usage(options->command, "--ndf %s does not allow these parameters",
 				     ndf_name(fit->ndf[0]));
 	return -1;

@@ -3,6 +3,7 @@
 #ifndef OPTIONS_H
 #define OPTIONS_H
 
+#include "data_readers/quantity.h"
 #include "fit/cli/command.h"
 #include "fit/cli/distribution.h"
 #include "fit/cli/files.h"
@@ -17,6 +18,8 @@ enum { OPTIONS_MAX = 128 }; /* rows of the option table, at most */
 struct options {
 	struct fit_options fit;
 	enum command command;
+	enum quantity quantity; /* of a file that may have another than it says */
+	enum gamut gamut;
 	const char *output; /* NULL: standard output */
 	const char *trace;  /* a CSV of the course of each search; NULL: none */
 	struct shard shard; /* .n = 0: all files */
@@ -63,6 +66,9 @@ bool options_given(const struct options *options, const char *name);
 /* options_given_beside - the name of some given option that is not among `expected`, which ends with NULL; NULL: none.
  */
 const char *options_given_beside(const struct options *options, const char *const *expected);
+
+/* options_reading - how the command reads a measurement. */
+struct read_options options_reading(const struct options *options, int threads);
 
 /* options_text - newly allocated: every option that changes a result, in a fixed order, defaults included.
  * NULL when out of memory. */

@@ -2,19 +2,17 @@
 /* stdfit bench - error against run time: the default search beside others, on one material; or, with --forms, the forms
  * of Lambda beside each other. */
 #include "data_readers/atomic_file.h"
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/options.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
 #include "fit/error/sample_set.h"
+#include "fit/results/course.h"
 #include "fit/results/result.h"
-#include "fit/results/trace.h"
-#include "fit/search/search.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 /* The seconds after which the algorithms are compared. */
@@ -73,14 +71,6 @@ static const struct csv_column forms_columns[FORMS_COLUMNS] = {
 	[FORMS_SECONDS] = {"seconds", true},
 };
 
-/* The course of one algorithm, every search that it takes in one. */
-struct curve {
-	struct trace trace;
-	double begin_s;
-	const struct ndf_class *ndf[FIT_NDFS_MAX]; /* of the searches so far, */
-	long evaluations[FIT_NDFS_MAX];            /* and how far each has come */
-};
-
 struct bench {
 	const struct options *options;
 	const struct algorithm *algorithm[ALGORITHM_COUNT];
@@ -97,38 +87,14 @@ struct bench {
 	struct error error;
 };
 
-/* Shapes evaluated by all searches so far, of which this one has come to `point`. */
-static long add_evaluations(struct curve *curve, const struct fit_trace *point)
-{
-	long sum = 0;
-	int i = 0;
-	while (curve->ndf[i] && curve->ndf[i] != point->ndf)
-		i++;
-	curve->ndf[i] = point->ndf;
-	curve->evaluations[i] = point->evaluations;
-	for (i = 0; i < FIT_NDFS_MAX; i++)
-		sum += curve->evaluations[i];
-	return sum;
-}
-
-static void curve_note(void *data, const struct fit_trace *point)
-{
-	struct curve *curve = data;
-	struct fit_trace own = *point;
-	own.seconds = search_clock() - curve->begin_s;
-	own.evaluations = add_evaluations(curve, point);
-	trace_note(&curve->trace, &own);
-}
-
-/* Runs one algorithm; the last point of its curve is its result. */
-static enum status run_one(struct bench *b, const struct algorithm *algorithm, struct curve *curve)
+/* Runs one algorithm; the last point of its course is its result. */
+static enum status run_one(struct bench *b, const struct algorithm *algorithm, struct course *course)
 {
 	struct fit_options fit = b->options->fit;
 	struct fit_result result;
 	fit.algorithm = algorithm;
-	fit.trace = curve_note;
-	fit.trace_data = curve;
-	curve->begin_s = search_clock();
+	fit.trace = course_note;
+	fit.trace_data = course;
 	const enum status status = fit_run(b->context, &b->measurement, &fit, &result, &b->error);
 	if (status != STATUS_OK)
 		return status;
@@ -141,84 +107,26 @@ static enum status run_one(struct bench *b, const struct algorithm *algorithm, s
 				      .k = m->k,
 				      .error = result.error,
 				      .evaluations = result.evaluations};
-	curve_note(curve, &end);
+	course_note(course, &end);
 	return STATUS_OK;
 }
 
-static bool is_thinned(const struct fit_trace *point)
+static enum status add_row(struct bench *b, const struct algorithm *algorithm, const struct course *course)
 {
-	return strcmp(point->stage, "full") != 0 && strcmp(point->stage, "end") != 0;
-}
-
-/* Judges the shapes that were found on thinned tables by the full one. */
-static enum status judge(struct bench *b, struct curve *curve)
-{
-	const struct ndf_class *ready = NULL;
-	struct objective objective;
-	struct linear linear;
-	enum status status = STATUS_OK;
-	for (int i = 0; i < FIT_NDFS_MAX && curve->ndf[i] && status == STATUS_OK; i++) {
-		ready = curve->ndf[i];
-		status = objective_init(&objective, &b->full, &b->options->fit, ready, 1, MASKING_COARSE);
-		for (size_t n = 0; n < curve->trace.n && status == STATUS_OK; n++) {
-			struct fit_trace *p = &curve->trace.point[n];
-			const struct shape shape = {p->sigma, p->gamma, p->ior, p->k};
-			if (*b->options->cancel)
-				status = STATUS_INTERRUPTED;
-			else if (p->ndf == ready && is_thinned(p)) {
-				objective_jump(&objective, &shape);
-				p->error = objective_eval(&objective, &shape, 1e-6, false, &linear);
-			}
-		}
-		objective_free(&objective);
-	}
-	return status;
-}
-
-/* Keeps the points within the time that are better than all before them, and the end. All are then of the NDF that was
- * asked for: GGX and Beckmann are members of STD. */
-static void keep_best(const struct bench *b, struct trace *trace)
-{
-	const double time_s = b->options->fit.time_s;
-	double best = INFINITY;
-	size_t kept = 0;
-	for (size_t i = 0; i < trace->n; i++) {
-		struct fit_trace p = trace->point[i];
-		const bool end = i + 1 == trace->n, better = p.seconds <= time_s && p.error < best;
-		if (!better && !end)
-			continue;
-		if (better)
-			best = p.error;
-		p.error = isinf(best) ? NAN : best;
-		p.seconds = fmin(p.seconds, time_s);
-		p.ndf = b->options->fit.ndf[0];
-		trace->point[kept++] = p;
-	}
-	trace->n = kept;
-}
-
-/* The error reached by then; NaN: none yet, or later than anybody was to go on. */
-static double error_after(const struct bench *b, const struct trace *trace, double seconds)
-{
-	double error = NAN;
-	for (size_t i = 0; i < trace->n && trace->point[i].seconds <= seconds; i++)
-		error = trace->point[i].error;
-	return seconds <= b->options->fit.time_s ? error : NAN;
-}
-
-static enum status add_row(struct bench *b, const struct algorithm *algorithm, const struct trace *trace)
-{
-	const struct fit_trace *end = &trace->point[trace->n - 1];
+	const struct fit_trace *end = &course->trace.point[course->trace.n - 1];
 	double number[BENCH_COLUMNS] = {[BENCH_ERROR] = end->error,
 					[BENCH_EVALUATIONS] = (double)end->evaluations,
 					[BENCH_SECONDS] = end->seconds};
 	char text[BENCH_COLUMNS][CSV_NUMBER_SIZE];
 	const char *cell[BENCH_COLUMNS] = {b->material, ndf_name(end->ndf), algorithm_name(algorithm)};
+	/* Empty where it is later than anybody was to go on. */
 	for (int i = 0; i < CHECKPOINTS; i++)
-		number[BENCH_CHECKPOINT + i] = error_after(b, trace, checkpoint_s[i]);
+		number[BENCH_CHECKPOINT + i] = checkpoint_s[i] <= b->options->fit.time_s
+						       ? course_error_after(course, checkpoint_s[i])
+						       : (double)NAN;
 	for (int c = BENCH_CHECKPOINT; c < BENCH_COLUMNS; c++)
 		cell[c] = csv_number(text[c], number[c]);
-	if (csv_table_add(&b->output, cell))
+	if (csv_table_add(&b->output, cell) != STATUS_OK)
 		return error_set(&b->error, STATUS_NO_MEMORY, "out of memory");
 	return STATUS_OK;
 }
@@ -230,7 +138,7 @@ static void report_progress(const struct bench *b, int i, int n, const char *nam
 		fprintf(stderr, "\r%d of %d: %s\033[K", i + 1, n, name);
 }
 
-static void tell_no_more(const struct bench *b)
+static void erase_progress(const struct bench *b)
 {
 	if (!b->options->quiet && isatty(STDERR_FILENO))
 		fprintf(stderr, "\r\033[K");
@@ -238,26 +146,29 @@ static void tell_no_more(const struct bench *b)
 
 static enum status run_algorithm(struct bench *b, const struct algorithm *algorithm)
 {
-	struct curve curve = {.begin_s = 0};
-	enum status status = run_one(b, algorithm, &curve);
-	if (status == STATUS_OK && curve.trace.incomplete)
+	struct course course = course_begin();
+	enum status status = run_one(b, algorithm, &course);
+	if (status == STATUS_OK && course.trace.incomplete)
 		status = error_set(&b->error, STATUS_NO_MEMORY, "out of memory");
 	if (status == STATUS_OK)
-		status = judge(b, &curve);
+		status = course_judge(&course, &b->full, &b->options->fit);
 	if (status == STATUS_OK) {
-		keep_best(b, &curve.trace);
-		status = add_row(b, algorithm, &curve.trace);
+		course_keep_best(&course, b->options->fit.time_s, b->options->fit.ndf[0]);
+		status = add_row(b, algorithm, &course);
 	}
 	if (status == STATUS_OK && b->options->trace)
-		trace_write(b->trace.stream, b->material, algorithm_name(algorithm), &curve.trace);
-	trace_free(&curve.trace);
+		trace_write(b->trace.stream, b->material, algorithm_name(algorithm), &course.trace);
+	trace_free(&course.trace);
 	return status;
 }
 
 static enum status read_file(struct bench *b)
 {
 	const struct options *options = b->options;
-	enum status status = merl_read(options->path[0], options->fit.threads, &b->measurement, &b->error);
+	const struct read_options reading = options_reading(options, options->fit.threads);
+	enum status status = measurement_read(options->path[0], &reading, &b->measurement, &b->error);
+	if (status == STATUS_OK)
+		status = measurement_require_table(&b->measurement, "bench", &b->error);
 	if (status != STATUS_OK)
 		return status;
 	b->material = result_material(options->path[0]);
@@ -299,7 +210,7 @@ static enum status run_all(struct bench *b)
 		report_progress(b, i, b->n_algorithms, algorithm_name(b->algorithm[i]));
 		status = run_algorithm(b, b->algorithm[i]);
 	}
-	tell_no_more(b);
+	erase_progress(b);
 	if (status == STATUS_OK && trace)
 		status = atomic_file_commit(&b->trace, &b->error);
 	return status;
@@ -343,7 +254,7 @@ static enum status add_form(struct bench *b, enum lambda_form form, const struct
 	}
 	for (int c = FORMS_ERROR; c < FORMS_COLUMNS; c++)
 		cell[c] = csv_number(text[c], number[c]);
-	if (csv_table_add(&b->output, cell))
+	if (csv_table_add(&b->output, cell) != STATUS_OK)
 		return error_set(&b->error, STATUS_NO_MEMORY, "out of memory");
 	return STATUS_OK;
 }
@@ -359,7 +270,7 @@ static enum status run_form(struct bench *b, enum lambda_form form)
 		return add_form(b, form, NULL);
 	enum status status = fit_run(b->context, &b->measurement, &fit, &result, &b->error);
 	if (status == STATUS_DOMAIN) {
-		tell_no_more(b);
+		erase_progress(b);
 		report_error("cannot fit %s with Lambda %s: %s", ndf_name(fit.ndf[0]), lambda_form_name(form),
 			     b->error.text);
 		b->incomplete = true;
@@ -379,7 +290,7 @@ static enum status run_forms(struct bench *b)
 		report_progress(b, i, LAMBDA_FORM_COUNT, lambda_form_name((enum lambda_form)i));
 		status = run_form(b, (enum lambda_form)i);
 	}
-	tell_no_more(b);
+	erase_progress(b);
 	return status;
 }
 
@@ -397,8 +308,8 @@ static void release(struct bench *b)
 static bool has_forms(const struct ndf_class *class)
 {
 	struct ndf ndf;
-	return !ndf_is_tabulated(class) && !ndf_init(&ndf, class, 0.1, 0.1, 3) &&
-	       !ndf_set_lambda_form(&ndf, LAMBDA_RATIONAL);
+	return !ndf_is_tabulated(class) && ndf_init(&ndf, class, 0.1, 0.1, 3) == STATUS_OK &&
+	       ndf_set_lambda_form(&ndf, LAMBDA_RATIONAL) == STATUS_OK;
 }
 
 static int check(const struct options *options)
@@ -439,5 +350,5 @@ int cmd_bench(int argc, char **argv, atomic_bool *cancel)
 	release(&b);
 	if (*cancel)
 		return EXIT_INTERRUPTED;
-	return status || b.incomplete ? EXIT_FAILED : EXIT_DONE;
+	return status != STATUS_OK || b.incomplete ? EXIT_FAILED : EXIT_DONE;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit export - a model in the form of another program. */
 #include "data_readers/atomic_file.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/merl.h"
 #include "fit/cli/messages.h"
 #include "fit/commands/commands.h"
@@ -29,7 +30,7 @@ static int check(const struct options *options)
 }
 
 /* Reads the measurement where the export has use for it: the FILE given, or the one that the row is of, if that is there
- * and still the same. Else it does without; the export tells what its errors are against. *found is its path, or NULL.
+ * and still the same. Else it does without; the export says what its errors are against. *found is its path, or NULL.
  * Fails only when out of memory: that says nothing about the file. */
 static enum status find_samples(const struct options *options, const struct source_model *model,
 				struct measurement *measurement, const char **found, struct error *error)
@@ -38,7 +39,7 @@ static enum status find_samples(const struct options *options, const struct sour
 	*found = measurement->value[0] ? path : NULL;
 	if (*found || !path || !export_wants_samples(options->format, &model->model))
 		return STATUS_OK;
-	const enum status status = merl_read(path, options->fit.threads, measurement, error);
+	const enum status status = measurement_read(path, &model->reading, measurement, error);
 	if (status != STATUS_OK)
 		return status == STATUS_NO_MEMORY ? status : STATUS_OK;
 	if (options->n_paths || result_is_input(model->input, measurement))
@@ -78,7 +79,8 @@ static enum status write_standard(const struct export *export, struct error *err
 		return error_set(error, STATUS_IO, "cannot write '/dev/null': %s", strerror(errno));
 	const enum status status = write_stream(export, nowhere, error);
 	fclose(nowhere);
-	return status != STATUS_OK ? status : write_stream(export, stdout, error); /* main() tells when writing fails */
+	/* main() reports when writing fails. */
+	return status != STATUS_OK ? status : write_stream(export, stdout, error);
 }
 
 static enum status write_text(const struct export *export, const char *path, struct error *error)
@@ -96,7 +98,7 @@ static enum status write_text(const struct export *export, const char *path, str
 	return status;
 }
 
-/* Writes the one model; tells on standard error what a binary file has no room for. */
+/* Writes the one model; reports on standard error what a binary file has no room for. */
 static enum status write_model(const struct options *options, const struct source_model *model,
 			       struct measurement *measurement, struct error *error)
 {

@@ -45,7 +45,7 @@ static bool advance(struct sink *sink, bool all)
 		if (!file->done && !all)
 			break;
 		show_rows(sink, &file->rows);
-		if (csv_table_move(&sink->rows, &file->rows)) {
+		if (csv_table_move(&sink->rows, &file->rows) != STATUS_OK) {
 			error_set(&sink->error, STATUS_NO_MEMORY, "out of memory");
 			return false;
 		}
@@ -85,11 +85,13 @@ static enum status finish(struct sink *sink, bool complete)
 
 static int run(struct sink *sink, struct batch *batch)
 {
-	if (sink->options->json && sink->options->output && store_probe(sink->options->output, &sink->error)) {
+	if (sink->options->json && sink->options->output &&
+	    store_probe(sink->options->output, &sink->error) != STATUS_OK) {
 		report_error("%s", sink->error.text);
 		return EXIT_FAILED;
 	}
-	if (sink->stored && store_open(&sink->store, sink->options->output, sink->options->resume, &sink->error)) {
+	if (sink->stored &&
+	    store_open(&sink->store, sink->options->output, sink->options->resume, &sink->error) != STATUS_OK) {
 		report_error("%s", sink->error.text);
 		return EXIT_FAILED;
 	}
@@ -101,11 +103,11 @@ static int run(struct sink *sink, struct batch *batch)
 	batch->user = sink;
 	int code = batch_run(batch);
 	/* The table of an empty share is one, too. */
-	if (!batch->n && sink->stored && store_begin(&sink->store, &sink->error)) {
+	if (!batch->n && sink->stored && store_begin(&sink->store, &sink->error) != STATUS_OK) {
 		sink->broken = true;
 		code = EXIT_FAILED;
 	}
-	if (!sink->broken && finish(sink, code != EXIT_INTERRUPTED)) {
+	if (!sink->broken && finish(sink, code != EXIT_INTERRUPTED) != STATUS_OK) {
 		sink->broken = true;
 		code = EXIT_FAILED;
 	}
@@ -138,12 +140,12 @@ static int run_traced(struct sink *sink, struct batch *batch)
 {
 	struct atomic_file file;
 	struct error error;
-	if (atomic_file_open(&file, sink->options->trace, &error)) {
+	if (atomic_file_open(&file, sink->options->trace, &error) != STATUS_OK) {
 		report_error("%s", error.text);
 		return EXIT_FAILED;
 	}
 	const int code = run(sink, batch);
-	if (!write_trace(batch, &file, &error))
+	if (write_trace(batch, &file, &error) == STATUS_OK)
 		return code;
 	report_error("%s", error.text);
 	return code == EXIT_DONE ? EXIT_FAILED : code;
@@ -171,7 +173,7 @@ static int collect(const struct options *options, struct files *files)
 	return bad;
 }
 
-/* An output takes the place of an older file, but not that of an input. Returns -1 or EXIT_USAGE. */
+/* An output replaces an older file, but no input. Returns -1 or EXIT_USAGE. */
 static int check_outputs(const struct options *options, const struct files *files)
 {
 	const char *const output[] = {options->output, options->trace};
@@ -194,7 +196,7 @@ int cmd_fit(int argc, char **argv, atomic_bool *cancel)
 	code = bad < 0 ? EXIT_FAILED : check_outputs(&options, &files);
 	if (options.shard.n && !bad)
 		files_keep_shard(&files, options.shard);
-	if (code >= 0 || batch_init(&batch, &options, &files)) {
+	if (code >= 0 || batch_init(&batch, &options, &files) != STATUS_OK) {
 		files_free(&files);
 		return code >= 0 ? code : EXIT_FAILED;
 	}

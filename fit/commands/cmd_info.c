@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* stdfit info - what is in a MERL file. */
-#include "data_readers/merl.h"
+/* stdfit info - what is in the file of a measurement. */
+#include "data_readers/measurement_read.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/options.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
-#include "fit/error/entries.h"
-#include "fit/error/sample_set.h"
+#include "fit/error/census.h"
 #include "fit/error/suspects.h"
 
-#include <gsl/gsl_statistics_float.h>
 #include <inttypes.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum info_column {
@@ -30,6 +27,10 @@ enum info_column {
 	INFO_ALBEDO = INFO_RANGE + 9, /* red, green, blue and the share measured, at 0, 30 and 60 degrees */
 	INFO_ENDS_AT = INFO_ALBEDO + 4 * SUSPECTS_ALBEDOS,
 	INFO_SUSPECTS,
+	INFO_FORMAT,
+	INFO_SYMMETRY,
+	INFO_CHANNELS,
+	INFO_LEFT_OUT,
 	INFO_COLUMNS
 };
 
@@ -68,73 +69,11 @@ static const struct csv_column columns[INFO_COLUMNS] = {
 	{"measured_60", true},
 	[INFO_ENDS_AT] = {"ends_at", true},
 	[INFO_SUSPECTS] = {"suspects", false},
+	[INFO_FORMAT] = {"format", false},
+	[INFO_SYMMETRY] = {"symmetry", false},
+	[INFO_CHANNELS] = {"channels", true},
+	[INFO_LEFT_OUT] = {"left_out", false},
 };
-
-struct range {
-	double min, median, max;
-};
-
-/* A cosine nearer to 0 is that of an entry on the horizon, to rounding; a measurement there is nothing strange. */
-#define HORIZON 1e-9
-
-/* What is counted over the entries. Ranges are of valid entries above the horizon; NaN when there is none. */
-struct census {
-	size_t valid, above, valid_above, valid_below;
-	struct range range[MERL_CHANNELS];
-};
-
-/* Counts, and picks out the valid entries above the horizon into value[channel]. */
-static void count_entries(const struct measurement *measurement, enum bins bins, float *const value[],
-			  struct census *census)
-{
-	const struct entries entries = entries_make(bins, measurement->n_phi_d);
-	size_t at = 0;
-	for (int i = 0; i < MERL_THETA_H; i++)
-		for (int j = 0; j < MERL_THETA_D; j++)
-			for (int k = 0; k < measurement->n_phi_d; k++, at++) {
-				struct vec3 wi, wo;
-				entries_dirs(&entries, i, j, k, &wi, &wo);
-				const bool above = entry_in_range(wi, wo, 0), valid = !isnan(measurement->value[0][at]);
-				census->above += above;
-				census->valid += valid;
-				census->valid_below += valid && fmin(wi.z, wo.z) < -HORIZON;
-				if (!above || !valid)
-					continue;
-				for (int c = 0; c < MERL_CHANNELS; c++)
-					value[c][census->valid_above] = measurement->value[c][at];
-				census->valid_above++;
-			}
-}
-
-/* In double: the sum of two floats may be none. Reorders the values. */
-static double median(float *value, size_t n)
-{
-	const double below = (double)gsl_stats_float_select(value, 1, n, (n - 1) / 2);
-
-	return below / 2 + (double)gsl_stats_float_select(value, 1, n, n / 2) / 2;
-}
-
-static enum status take_census(const struct measurement *measurement, enum bins bins, struct census *census)
-{
-	const size_t n = measurement_count(measurement);
-	float *values = malloc(MERL_CHANNELS * n * sizeof(*values));
-	if (!values)
-		return STATUS_NO_MEMORY;
-	float *const value[MERL_CHANNELS] = {values, values + n, values + 2 * n};
-	*census = (struct census){0};
-	count_entries(measurement, bins, value, census);
-	for (int c = 0; c < MERL_CHANNELS; c++) {
-		struct range *range = &census->range[c];
-		*range = (struct range){NAN, NAN, NAN};
-		if (!census->valid_above)
-			continue;
-		range->min = (double)gsl_stats_float_min(value[c], 1, census->valid_above);
-		range->max = (double)gsl_stats_float_max(value[c], 1, census->valid_above);
-		range->median = median(value[c], census->valid_above);
-	}
-	free(values);
-	return STATUS_OK;
-}
 
 enum { SUSPECTS_SIZE = 256 + SUSPECTS_TEXT };
 
@@ -147,7 +86,7 @@ static void add_count(char *text, const char *what, size_t n)
 
 /* What a sound measurement does not have. */
 static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *measurement, const struct census *census,
-			   const struct suspects *suspects)
+			   enum gamut gamut, const struct suspects *suspects)
 {
 	char explained[SUSPECTS_TEXT];
 	const bool zero = census->range[0].max <= 0 && census->range[1].max <= 0 && census->range[2].max <= 0;
@@ -158,20 +97,36 @@ static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *m
 	add_count(text, "masked above the horizon", census->above - census->valid_above);
 	add_count(text, "valid below the horizon", census->valid_below);
 	add_count(text, "non-finite", measurement->n_nonfinite);
+	if (gamut == GAMUT_CLIP)
+		add_count(text, "out of gamut, set to 0", measurement->n_out_of_gamut);
 	const size_t used = strlen(text);
 	if (suspects->found)
 		snprintf(text + used, SUSPECTS_SIZE - used, "%s%s", used ? "; " : "",
 			 suspects_explain(suspects, explained));
 }
 
-static enum status add_file(struct csv_table *table, const char *path, const struct measurement *measurement,
-			    const struct census *census, const struct suspects *found)
+/* Which entries of the file are not among those that count, and why. */
+static void write_left_out(char text[SUSPECTS_SIZE], const struct measurement *measurement, enum gamut gamut)
 {
+	text[0] = '\0';
+	add_count(text, "negative", measurement->n_negative);
+	add_count(text, "non-finite", measurement->n_nonfinite);
+	add_count(text, "not measured", measurement->n_missing);
+	add_count(text, "at or below the horizon", measurement->n_below_horizon);
+	if (gamut == GAMUT_MASK)
+		add_count(text, "out of gamut", measurement->n_out_of_gamut);
+}
+
+static enum status add_file(struct csv_table *table, const char *path, const struct measurement *measurement,
+			    const struct census *census, enum gamut gamut, const struct suspects *found)
+{
+	const struct scattered *scattered = measurement->scattered;
 	double number[INFO_COLUMNS] = {
 		[INFO_SIZE] = (double)measurement->file_size,
-		[INFO_N_THETA_H] = MERL_THETA_H,
-		[INFO_N_THETA_D] = MERL_THETA_D,
-		[INFO_N_PHI_D] = measurement->n_phi_d,
+		[INFO_N_THETA_H] = scattered ? (double)NAN : MERL_THETA_H,
+		[INFO_N_THETA_D] = scattered ? (double)NAN : MERL_THETA_D,
+		[INFO_N_PHI_D] = scattered ? (double)NAN : measurement->n_phi_d,
+		[INFO_CHANNELS] = scattered ? measurement->n_channels : MERL_CHANNELS,
 		[INFO_VALID] = (double)census->valid,
 		[INFO_NEGATIVE] = (double)measurement->n_negative,
 		[INFO_NONFINITE] = (double)measurement->n_nonfinite,
@@ -189,15 +144,20 @@ static enum status add_file(struct csv_table *table, const char *path, const str
 		number[INFO_ALBEDO + 4 * a + 3] = found->measured[a];
 	}
 	number[INFO_ENDS_AT] = found->ends_at;
-	char text[INFO_COLUMNS][CSV_NUMBER_SIZE], hash[CSV_NUMBER_SIZE], suspects[SUSPECTS_SIZE];
+	char text[INFO_COLUMNS][CSV_NUMBER_SIZE], hash[CSV_NUMBER_SIZE], suspects[SUSPECTS_SIZE],
+		left_out[SUSPECTS_SIZE];
 	const char *cell[INFO_COLUMNS];
 	for (int c = 0; c < INFO_COLUMNS; c++)
 		cell[c] = csv_number(text[c], number[c]);
 	snprintf(hash, sizeof hash, "%016" PRIx64, measurement->file_hash);
-	write_suspects(suspects, measurement, census, found);
+	write_suspects(suspects, measurement, census, gamut, found);
 	cell[INFO_PATH] = path;
 	cell[INFO_HASH] = hash;
 	cell[INFO_SUSPECTS] = suspects;
+	write_left_out(left_out, measurement, gamut);
+	cell[INFO_FORMAT] = measurement->format;
+	cell[INFO_SYMMETRY] = symmetry_name(scattered ? scattered->symmetry : SYMMETRY_ISOTROPIC);
+	cell[INFO_LEFT_OUT] = left_out;
 	return csv_table_add(table, cell);
 }
 
@@ -207,13 +167,14 @@ static enum status inspect(struct csv_table *table, const struct options *option
 	struct measurement measurement;
 	struct census census;
 	struct suspects suspects;
-	enum status status = merl_read(path, options->fit.threads, &measurement, error);
+	const struct read_options reading = options_reading(options, options->fit.threads);
+	enum status status = measurement_read(path, &reading, &measurement, error);
 	if (status != STATUS_OK)
 		return status;
 	suspects_find(&measurement, &options->fit.criterion, &suspects);
-	status = take_census(&measurement, options->fit.criterion.bins, &census);
+	status = census_take(&measurement, options->fit.criterion.bins, &census);
 	if (status == STATUS_OK)
-		status = add_file(table, path, &measurement, &census, &suspects);
+		status = add_file(table, path, &measurement, &census, options->gamut, &suspects);
 	if (status != STATUS_OK)
 		error_set(error, status, "out of memory");
 	measurement_free(&measurement);
@@ -230,7 +191,7 @@ int cmd_info(int argc, char **argv, atomic_bool *cancel)
 	struct csv_table table = csv_table_make(columns, INFO_COLUMNS);
 	code = EXIT_DONE;
 	for (int i = 0; i < options.n_paths && !*cancel; i++) {
-		if (inspect(&table, &options, options.path[i], &error)) {
+		if (inspect(&table, &options, options.path[i], &error) != STATUS_OK) {
 			report_error("%s", error.text);
 			code = EXIT_FAILED;
 		}

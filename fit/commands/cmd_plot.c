@@ -84,7 +84,7 @@ static bool is_trace(const char *path)
 	struct stat st;
 	int fd;
 	ssize_t n = 0;
-	if (!regular_file_open(path, "a trace", &fd, &st, NULL))
+	if (regular_file_open(path, "a trace", &fd, &st, NULL) == STATUS_OK)
 		n = read(fd, line, sizeof line - 1);
 	if (fd >= 0)
 		close(fd);

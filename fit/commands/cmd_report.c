@@ -6,9 +6,8 @@
 #include "fit/cli/messages.h"
 #include "fit/cli/output_directory.h"
 #include "fit/cli/progress.h"
-#include "fit/cli/text_stream.h"
 #include "fit/commands/commands.h"
-#include "fit/page/page.h"
+#include "fit/page/material_pictures.h"
 #include "fit/page/report_spheres.h"
 #include "fit/plot/gnuplot.h"
 #include "fit/plot/plot_files.h"
@@ -16,27 +15,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The pictures of a material, in the order of the page. */
-enum picture { PICTURE_SPHERES, PICTURE_SLICES, PICTURE_MAP, PICTURE_NDF, PICTURES };
-
 struct report {
 	const struct options *options;
 	struct progress progress;
 	struct scratch scratch; /* where pictures are made */
 	int code;
 	struct environment environment;
-	bool no_gnuplot, no_png; /* told already; why, below */
+	bool no_gnuplot, no_png; /* reported already; why, below */
 	struct error missing, missing_png;
 };
 
-static void tell(struct report *r, const struct error *error)
+static void report_failure(struct report *r, const struct error *error)
 {
 	progress_erase(&r->progress);
 	report_error("%s", error->text);
 	r->code = EXIT_FAILED;
 }
 
-/* Draws what plot_*() has written to the scratch directory. Without gnuplot the page does without, which is told once. */
+/* Draws what plot_*() has written to the scratch directory. Without gnuplot the page does without, which is reported once. */
 static bool draw(struct report *r, const char *const *name, int n, struct error *error)
 {
 	if (r->no_gnuplot) {
@@ -50,12 +46,12 @@ static bool draw(struct report *r, const char *const *name, int n, struct error 
 		r->no_gnuplot = true;
 		r->missing = *error;
 	} else if (status != STATUS_OK && status != STATUS_INTERRUPTED) {
-		tell(r, error);
+		report_failure(r, error);
 	}
 	return status == STATUS_OK;
 }
 
-/* NAME in the scratch directory; NULL, which the page takes for no picture, when out of memory, which `why` tells. */
+/* NAME in the scratch directory; NULL, which the page takes for no picture, when out of memory, as `why` then says. */
 static char *scratch_path(const struct report *r, const char *name, struct error *why)
 {
 	char *path;
@@ -79,11 +75,11 @@ static enum status begin(struct report *r, struct page *page, FILE *file, const 
 	const enum status status = plot_errors(r->scratch.path, materials, &why);
 	const bool wanted = status != STATUS_NO_DATA && materials->n > 1;
 	if (status != STATUS_OK && status != STATUS_NO_DATA)
-		tell(r, &why);
+		report_failure(r, &why);
 	if (status == STATUS_OK && wanted && draw(r, name, 1, &why)) {
 		errors.path = scratch_path(r, "errors.svg", &why);
 		if (!errors.path)
-			tell(r, &why);
+			report_failure(r, &why);
 	}
 	const char *missing = wanted && !errors.path ? why.text : NULL;
 	const enum status begun = page_begin(page, file, materials, &errors, missing, error);
@@ -91,37 +87,7 @@ static enum status begin(struct report *r, struct page *page, FILE *file, const 
 	return begun;
 }
 
-/* The light, and how many samples of it: what the spheres depend on beside the fits. */
-static void put_light(FILE *file, const struct options *options)
-{
-	const bool map = options_given(options, "environment") || !options->light;
-	fprintf(file, "%s%s%s%s", map ? options->environment : "", map && options->light ? ", " : "",
-		options->light ? "lights " : "", options->light ? options->light : "");
-	if (options->exposure != 0)
-		fprintf(file, ", exposure %g", options->exposure);
-	fprintf(file, "; %d samples a pixel", options->pixel_samples);
-}
-
-/* What the spheres show, and how far they are from the measured one, in words; newly allocated, NULL when out of
- * memory. */
-static char *spheres_caption(const struct options *options, const struct material_data *data,
-			     const struct picture_error *difference)
-{
-	struct text_stream caption;
-	if (!text_stream_open(&caption))
-		return NULL;
-	FILE *file = caption.file;
-	fputs("Spheres in the same light (", file);
-	put_light(file, options);
-	fputs("), and in false colours how far each fit's is from the measured one. Mean CIEDE2000 and SSIM:", file);
-	for (int f = 0; f < data->n; f++)
-		fprintf(file, "%s %s %.2f, %.4f", f ? ";" : "", data->fit[f].ndf, difference[f].delta_e,
-			difference[f].ssim);
-	fputs(".", file);
-	return text_stream_close(&caption);
-}
-
-/* Without libpng the page does without spheres, which is told once. */
+/* Without libpng the page does without spheres, which is reported once. */
 static bool draw_spheres(struct report *r, const struct material_data *data, struct page_picture *picture,
 			 char **caption, struct error *why)
 {
@@ -133,7 +99,7 @@ static bool draw_spheres(struct report *r, const struct material_data *data, str
 	else if (path)
 		status = report_spheres(path, data, &r->environment, r->options, difference, why);
 	if (status == STATUS_OK) {
-		*caption = spheres_caption(r->options, data, difference);
+		*caption = material_spheres_caption(r->options, data, difference);
 		if (!*caption)
 			status = error_set(why, STATUS_NO_MEMORY, "out of memory");
 	}
@@ -149,7 +115,7 @@ static bool draw_spheres(struct report *r, const struct material_data *data, str
 		r->no_png = true;
 		r->missing_png = *why;
 	} else if (status != STATUS_UNSUPPORTED && status != STATUS_INTERRUPTED) {
-		tell(r, why);
+		report_failure(r, why);
 	}
 	return false;
 }
@@ -159,8 +125,8 @@ static bool draw_plots(struct report *r, const struct material_data *data, struc
 {
 	static const char *const name[PICTURES] = {
 		[PICTURE_SLICES] = "slices.svg", [PICTURE_MAP] = "map.png", [PICTURE_NDF] = "ndf.svg"};
-	if (plot_material(r->scratch.path, data, why)) {
-		tell(r, why);
+	if (plot_material(r->scratch.path, data, why) != STATUS_OK) {
+		report_failure(r, why);
 		return false;
 	}
 	if (!draw(r, plot_material_names, PLOT_MATERIAL_PICTURES, why))
@@ -171,7 +137,7 @@ static bool draw_plots(struct report *r, const struct material_data *data, struc
 		all &= picture[p].path != NULL;
 	}
 	if (!all)
-		tell(r, why);
+		report_failure(r, why);
 	return all;
 }
 
@@ -184,7 +150,7 @@ static bool draw_material(struct report *r, const struct materials *materials, s
 	if (status == STATUS_NO_DATA && materials->reported)
 		r->code = EXIT_FAILED;
 	else if (status != STATUS_OK)
-		tell(r, why);
+		report_failure(r, why);
 	if (status != STATUS_OK)
 		return false;
 	struct error no_spheres;
@@ -198,36 +164,10 @@ static bool draw_material(struct report *r, const struct materials *materials, s
 
 static enum status add_material(struct report *r, const struct page *page, size_t m, struct error *error)
 {
-	struct page_picture picture[PICTURES] = {
-		[PICTURE_SPHERES] = {.type = "image/png",
-				     .alt = "spheres in the same light, as measured and as each fit has it, and their "
-					    "differences in false colours."},
-		[PICTURE_SLICES] =
-			{.type = "image/svg+xml",
-			 .plot = true,
-			 .alt = "measured and fitted BRDF over theta_h, on a logarithmic scale, for theta_d of 0, 15, "
-				"30, 45, 60 and 75 degrees at phi_d = 90 degrees.",
-			 .caption = "Slices, measured and fitted: \xcf\x86_d = 90\xc2\xb0, six \xce\xb8_d, mean of the "
-				    "channels."},
-		[PICTURE_MAP] =
-			{.type = "image/png",
-			 .plot = true,
-			 .alt = "heat maps of the error over theta_h and theta_d, one a fit; the errors in all are in "
-				"the table of parameters.",
-			 .caption =
-				 "Where each fit errs: E of each row (\xce\xb8_h, \xce\xb8_d) of the table by itself; "
-				 "gray: nothing measured."},
-		[PICTURE_NDF] =
-			{.type = "image/svg+xml",
-			 .plot = true,
-			 .alt = "D of each fit over theta_h against the D that the fit reads off the data, and G1 over "
-				"theta.",
-			 .caption =
-				 "D of each fit against the D that it reads off the data at small \xce\xb8_d, and G\xe2"
-				 "\x82\x81."},
-	};
+	struct page_picture picture[PICTURES];
 	struct error why;
 	char *caption = NULL;
+	memcpy(picture, material_pictures, sizeof picture);
 	const bool drawn = draw_material(r, page->materials, m, picture, &caption, &why);
 	enum status status = STATUS_INTERRUPTED;
 	if (!*r->options->cancel)

@@ -5,20 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double degree = M_PI / 180;
-
-double cell_measure(int i, int j)
-{
-	const struct halfdiff low = bins_angles(BINS_NODE, i, j, 0), high = bins_angles(BINS_NODE, i + 1, j + 1, 0);
-	const double h0 = low.theta_h, h1 = high.theta_h, d0 = low.theta_d, d1 = high.theta_d;
-	/* cos a - cos b and (sin^2 b - sin^2 a)/2 as products: no cancellation in narrow cells. */
-	const double w_h = 2 * M_PI * 2 * sin((h0 + h1) / 2) * sin((h1 - h0) / 2);
-	const double w_d = sin(d0 + d1) * sin(d1 - d0) / 2;
-
-	/* phi_d is one degree wide in both variants of the table. */
-	return 4 * w_h * w_d * degree;
-}
-
 double weight_at(enum weight weight, int i, int j, double cos_i, double cos_o)
 {
 	switch (weight) {

@@ -73,9 +73,6 @@ static inline float *sample_set_value(const struct sample_set *table, int block,
 	return table->value + (size_t)KERNEL_BLOCK * (size_t)(MERL_CHANNELS * (pairs + block) + members * c);
 }
 
-/* cell_measure - solid angle of a cell in wi and wo, the integral of 4 cos_d dw_h dw_d over all phi_h and
- * [i, i+1) x [j, j+1) x [k, k+1): sr^2. */
-double cell_measure(int i, int j);
 /* weight_at - w of entry (i, j, .) of a table, given its cosines; wants none of them for WEIGHT_NONE. */
 double weight_at(enum weight weight, int i, int j, double cos_i, double cos_o);
 

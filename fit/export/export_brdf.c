@@ -429,7 +429,7 @@ static enum status brdf_write(const struct export *export, FILE *file, struct er
 	struct lambda_table table = {0};
 	const bool tabulated =
 		export_max(model->ks) > 0 && model->gaf != GAF_V_GROOVE && lambda_kind(&model->ndf) == LAMBDA_OF_TABLE;
-	if (tabulated && lambda_table_init(&table, &model->ndf)) {
+	if (tabulated && lambda_table_init(&table, &model->ndf) != STATUS_OK) {
 		lambda_table_free(&table);
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	}

@@ -90,7 +90,7 @@ enum status lambda_table_init(struct lambda_table *table, const struct ndf *ndf)
 	*table = (struct lambda_table){.log2_first = first};
 	for (int density = FIRST_DENSITY; density <= LAST_DENSITY; density *= 2) {
 		table->per_octave = density;
-		if (fill(table, ndf, last - first))
+		if (fill(table, ndf, last - first) != STATUS_OK)
 			return STATUS_NO_MEMORY;
 		if (table->G1_error < ENOUGH)
 			break;

@@ -82,15 +82,15 @@ static enum status read_ndf(const json_t *json, struct model_json *read, struct 
 	enum lambda_form form;
 	if (!class)
 		return bad("ndf", "the name of a distribution", error);
-	if (lambda_form_find(text_of(json, "lambda"), &form))
+	if (lambda_form_find(text_of(json, "lambda"), &form) != STATUS_OK)
 		return bad("lambda", "the name of a form of Lambda", error);
 	if (ndf_is_tabulated(class))
 		return read_nodes(json, read, error);
 	for (int i = 0; ndf_param_at(class, i); i++)
 		value[i] = number_of(json_object_get(parameters, ndf_param_at(class, i)->name));
-	if (ndf_init_params(&read->model.ndf, class, value))
+	if (ndf_init_params(&read->model.ndf, class, value) != STATUS_OK)
 		return bad("parameters", "those of the distribution", error);
-	if (form != LAMBDA_EXACT && ndf_set_lambda_form(&read->model.ndf, form))
+	if (form != LAMBDA_EXACT && ndf_set_lambda_form(&read->model.ndf, form) != STATUS_OK)
 		return bad("lambda", "a form that the distribution has", error);
 	return STATUS_OK;
 }
@@ -98,9 +98,9 @@ static enum status read_ndf(const json_t *json, struct model_json *read, struct 
 static enum status read_terms(const json_t *json, struct model_json *read, struct fit_options *fit, struct error *error)
 {
 	struct cook_torrance *model = &read->model;
-	if (gaf_find(text_of(json, "gaf"), &model->gaf))
+	if (gaf_find(text_of(json, "gaf"), &model->gaf) != STATUS_OK)
 		return bad("gaf", "the name of a masking-shadowing term", error);
-	if (fresnel_find(text_of(json, "fresnel"), &model->fresnel))
+	if (fresnel_find(text_of(json, "fresnel"), &model->fresnel) != STATUS_OK)
 		return bad("fresnel", "the name of a Fresnel term", error);
 	model->n = number_of(json_object_get(json, "ior"));
 	model->k = number_of(json_object_get(json, "k"));
@@ -127,8 +127,8 @@ static enum status read_fitted(const json_t *json, struct model_json *read, stru
 	fit->criterion.max_theta = number_of(json_object_get(fitted, "max_theta"));
 	fit->criterion.zero_is_missing = json_is_true(json_object_get(fitted, "zero_is_missing"));
 	read->error = number_of(json_object_get(fitted, "error"));
-	if (weight_find(text_of(fitted, "weight"), &fit->criterion.weight) ||
-	    bins_find(text_of(fitted, "bins"), &fit->criterion.bins) ||
+	if (weight_find(text_of(fitted, "weight"), &fit->criterion.weight) != STATUS_OK ||
+	    bins_find(text_of(fitted, "bins"), &fit->criterion.bins) != STATUS_OK ||
 	    !(fit->criterion.max_theta > 0 && fit->criterion.max_theta <= 90))
 		return bad("fitted", "an object with weight, bins and max_theta", error);
 	if (!copy(text_of(json, "material"), &read->material) || !copy(text_of(fitted, "path"), &read->path))
@@ -147,7 +147,7 @@ static enum status read_model(const json_t *json, struct model_json *read, struc
 		status = read_ndf(json, read, error);
 	if (status == STATUS_OK)
 		status = read_terms(json, read, fit, error);
-	return status ? status : read_fitted(json, read, fit, error);
+	return status != STATUS_OK ? status : read_fitted(json, read, fit, error);
 }
 
 /* The tree of a text; NULL, and the reason. */

@@ -69,7 +69,7 @@ const struct measurement *substitute_measurement(const struct export_source *sou
 	if (source->measurement)
 		return source->measurement;
 	return model_table(source->model, source->fit->criterion.bins, 180, source->fit->criterion.max_theta,
-			   source->fit->threads, own)
+			   source->fit->threads, own) != STATUS_OK
 		       ? NULL
 		       : own;
 }
@@ -215,10 +215,11 @@ static enum status fit_substitute(struct export *export, const struct target *ta
 	}
 	if (status == STATUS_OK && target->gray)
 		average_specular(&export->model);
-	*blended = !status && target->blend && !fits_blend(&export->model);
+	*blended = status == STATUS_OK && target->blend && !fits_blend(&export->model);
 	if (*blended)
 		status = fit_blend(context, measurement, &fit, &export->model, error);
-	if (status == STATUS_OK && target->gray && fit.diffuse && gray_specular(measurement, &fit, &export->model))
+	if (status == STATUS_OK && target->gray && fit.diffuse &&
+	    gray_specular(measurement, &fit, &export->model) != STATUS_OK)
 		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
 	fit_context_free(context);
 	return status;

@@ -206,10 +206,10 @@ enum status page_begin(struct page *page, FILE *file, const struct materials *ma
 		       const struct page_picture *errors, const char *missing, struct error *error)
 {
 	*page = (struct page){.file = file, .materials = materials};
-	if (error_grid_make(materials, &page->grid))
+	if (error_grid_make(materials, &page->grid) != STATUS_OK)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	put_top(file, materials);
-	if (put_summary(file, &page->grid))
+	if (put_summary(file, &page->grid) != STATUS_OK)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	const enum status status = put_picture(file, NULL, errors, error);
 	put_missing(file, missing);

@@ -56,9 +56,17 @@ void sheet_end(struct sheet *sheet, int n)
 	sheet->image.height = label_height(sheet) + n * row_height(sheet);
 }
 
-int sheet_label_length(const struct sheet *sheet)
+/* Characters that a label or title has room for. */
+static int label_length(const struct sheet *sheet)
 {
 	return sheet->size / (FONT_ADVANCE * sheet->scale);
+}
+
+void sheet_error_label(const struct sheet *sheet, const struct picture_error *error, char *label, size_t size)
+{
+	const int length = snprintf(label, size, "dE %.2f SSIM %.3f", error->delta_e, error->ssim);
+	if (length > label_length(sheet))
+		snprintf(label, size, "dE %.2f", error->delta_e);
 }
 
 /* The upper left corner of a cell's label; a sphere and a difference are below it. */

@@ -21,8 +21,9 @@ MUST_CHECK enum status sheet_init(struct sheet *sheet, int size, int columns, in
 void sheet_free(struct sheet *sheet);
 /* sheet_end - cuts off what is below the first n rows. */
 void sheet_end(struct sheet *sheet, int n);
-/* sheet_label_length - characters that a label or title has room for. */
-int sheet_label_length(const struct sheet *sheet);
+/* sheet_error_label - the label of a sphere that differs so much from the measured one: CIEDE2000 and, where there is room for
+ * it, SSIM. */
+void sheet_error_label(const struct sheet *sheet, const struct picture_error *error, char *label, size_t size);
 
 /* sheet_title - writes what a column shows at its top. */
 void sheet_title(struct sheet *sheet, int column, const char *title);

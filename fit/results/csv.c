@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/results/csv.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_file.h"
 #include "data_readers/text_quote.h"
 
@@ -45,7 +46,7 @@ enum status csv_table_add(struct csv_table *table, const char *const *cell)
 	size_t size = n * sizeof(char *);
 	for (size_t c = 0; c < n; c++)
 		size += (cell[c] ? strlen(cell[c]) : 0) + 1;
-	if (table_reserve(table, table->n_rows + 1))
+	if (table_reserve(table, table->n_rows + 1) != STATUS_OK)
 		return STATUS_NO_MEMORY;
 	char **row = malloc(size);
 	if (!row)
@@ -61,7 +62,7 @@ enum status csv_table_add(struct csv_table *table, const char *const *cell)
 
 enum status csv_table_move(struct csv_table *table, struct csv_table *from)
 {
-	if (table_reserve(table, table->n_rows + from->n_rows))
+	if (table_reserve(table, table->n_rows + from->n_rows) != STATUS_OK)
 		return STATUS_NO_MEMORY;
 	for (size_t i = 0; i < from->n_rows; i++)
 		table->row[table->n_rows++] = from->row[i];
@@ -73,7 +74,7 @@ enum status csv_table_move(struct csv_table *table, struct csv_table *from)
 bool csv_is_name(const char *path)
 {
 	const size_t length = strlen(path);
-	return length > 4 && !strcasecmp(path + length - 4, ".csv");
+	return length > 4 && !strcasecmp(path + length - 4, ".csv") && !measurement_is_known(path);
 }
 
 /* Writing */
@@ -114,7 +115,7 @@ void csv_write_header(FILE *file, const struct csv_column *column, int n_columns
 struct reader {
 	const char *path;
 	char name[TEXT_QUOTE_SIZE]; /* the path, for messages */
-	char *text, *at, *end;      /* the file, followed by a NUL; fields are cut out of it in place */
+	char *text, *at, *end;      /* the file, followed by a NUL; fields are cut out where they stand */
 	size_t line, next_line;     /* of the record just read; of the one to come */
 	char **field;
 	size_t n_fields, capacity;
@@ -136,7 +137,7 @@ static enum status read_text(struct reader *r, struct error *error)
 	return STATUS_OK;
 }
 
-/* Undoes the quotes of the field at r->at in place and leaves r->at behind the closing one. */
+/* Undoes the quotes of the field at r->at where it stands and leaves r->at behind the closing one. */
 static enum status unquote(struct reader *r, struct error *error)
 {
 	char *to = r->at;
@@ -197,7 +198,7 @@ static enum status read_record(struct reader *r, struct error *error)
 			r->at[-1] = '\0';
 		if (separator)
 			*r->at++ = '\0';
-		if (push_field(r, field))
+		if (push_field(r, field) != STATUS_OK)
 			return error_set(error, STATUS_NO_MEMORY, "cannot read '%s': out of memory", r->name);
 		r->terminated = separator == '\n';
 		r->next_line += r->terminated;
@@ -211,14 +212,14 @@ static enum status read_record(struct reader *r, struct error *error)
 	return STATUS_OK;
 }
 
-static enum status add_record(struct csv_table *table, struct reader *r, const size_t *place, size_t n_header,
+static enum status add_record(struct csv_table *table, struct reader *r, const size_t *index, size_t n_header,
 			      const char **cell, struct error *error)
 {
 	if (r->n_fields != n_header)
 		return error_set(error, STATUS_FORMAT, "'%s' line %zu: expected %zu fields, found %zu", r->name,
 				 r->line, n_header, r->n_fields);
 	for (int c = 0; c < table->n_columns; c++) {
-		cell[c] = place[c] < n_header ? r->field[place[c]] : "";
+		cell[c] = index[c] < n_header ? r->field[index[c]] : "";
 		double x;
 		if (table->column[c].number && !csv_parse_number(cell[c], &x)) {
 			char found[64];
@@ -228,20 +229,20 @@ static enum status add_record(struct csv_table *table, struct reader *r, const s
 					 table->column[c].name, found);
 		}
 	}
-	if (csv_table_add(table, cell))
+	if (csv_table_add(table, cell) != STATUS_OK)
 		return error_set(error, STATUS_NO_MEMORY, "cannot read '%s': out of memory", r->name);
 	return STATUS_OK;
 }
 
-/* place[c]: where the header has column c; n_fields of the header when nowhere. */
-static enum status find_columns(const struct csv_table *table, const struct reader *r, int needed, size_t *place,
+/* index[c]: where the header has column c; n_fields of the header when nowhere. */
+static enum status find_columns(const struct csv_table *table, const struct reader *r, int needed, size_t *index,
 				struct error *error)
 {
 	for (int c = 0; c < table->n_columns; c++) {
-		place[c] = 0;
-		while (place[c] < r->n_fields && strcmp(r->field[place[c]], table->column[c].name) != 0)
-			place[c]++;
-		if (place[c] == r->n_fields && c < needed)
+		index[c] = 0;
+		while (index[c] < r->n_fields && strcmp(r->field[index[c]], table->column[c].name) != 0)
+			index[c]++;
+		if (index[c] == r->n_fields && c < needed)
 			return error_set(error, STATUS_FORMAT,
 					 "'%s' line 1: expected a header with column %s, found none", r->name,
 					 table->column[c].name);
@@ -252,16 +253,16 @@ static enum status find_columns(const struct csv_table *table, const struct read
 static enum status read_rows(struct csv_table *table, struct reader *r, int needed, size_t *complete,
 			     struct error *error)
 {
-	size_t *place = calloc((size_t)table->n_columns, sizeof(*place));
+	size_t *index = calloc((size_t)table->n_columns, sizeof(*index));
 	const char **cell = calloc((size_t)table->n_columns, sizeof(*cell));
 	enum status status = STATUS_OK;
-	if (!place || !cell) {
+	if (!index || !cell) {
 		status = error_set(error, STATUS_NO_MEMORY, "cannot read '%s': out of memory", r->name);
 		goto out;
 	}
 	status = read_record(r, error);
 	if (status == STATUS_OK)
-		status = find_columns(table, r, needed, place, error);
+		status = find_columns(table, r, needed, index, error);
 	const size_t n_header = r->n_fields;
 	if (status == STATUS_OK && complete)
 		*complete = (size_t)(r->at - r->text);
@@ -277,13 +278,13 @@ static enum status read_rows(struct csv_table *table, struct reader *r, int need
 			error_set(error, status, "%s", why.text);
 		if (status != STATUS_OK || !r->n_fields)
 			break;
-		status = add_record(table, r, place, n_header, cell, error);
+		status = add_record(table, r, index, n_header, cell, error);
 		if (complete)
 			*complete = (size_t)(r->at - r->text);
 	}
 out:
 	free(cell);
-	free(place);
+	free(index);
 	return status;
 }
 

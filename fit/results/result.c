@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/results/result.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/results/energy_conservation.h"
 #include "fit/search/free_form.h"
@@ -75,16 +76,42 @@ enum status result_check_input(const char *input, const struct measurement *meas
 	return error_set(error, STATUS_FORMAT, "cannot show '%s': it is not the file any more that was fitted", name);
 }
 
+enum { RECORDED_SIZE = 32 };
+
+/* The value behind NAME= in the text of the options; false: it is not there, or does not fit. */
+static bool recorded(const char *options, const char *name, char value[RECORDED_SIZE])
+{
+	const size_t length = strlen(name);
+	for (const char *at = options; *at; at += strspn(at, " ")) {
+		const size_t n = strcspn(at, " ");
+		if (n > length && !strncmp(at, name, length) && n - length < RECORDED_SIZE) {
+			snprintf(value, RECORDED_SIZE, "%.*s", (int)(n - length), at + length);
+			return true;
+		}
+		at += n;
+	}
+	return false;
+}
+
+struct read_options result_reading(char *const *row, int threads)
+{
+	struct read_options reading = {.threads = threads};
+	char value[RECORDED_SIZE];
+	/* What is no name that this version knows leaves the default. */
+	if (recorded(row[RESULT_OPTIONS], "quantity=", value) && quantity_find(value, &reading.quantity) != STATUS_OK)
+		reading.quantity = QUANTITY_FROM_FILE;
+	if (recorded(row[RESULT_OPTIONS], "gamut=", value) && gamut_find(value, &reading.gamut) != STATUS_OK)
+		reading.gamut = GAMUT_CLIP;
+	return reading;
+}
+
 char *result_material(const char *path)
 {
-	static const char suffix[] = ".binary";
 	const char *slash = strrchr(path, '/');
 	char *name = strdup(slash ? slash + 1 : path);
 	if (!name)
 		return NULL;
-	const size_t length = strlen(name), cut = sizeof suffix - 1;
-	if (length > cut && !strcasecmp(name + length - cut, suffix))
-		name[length - cut] = '\0';
+	name[strlen(name) - measurement_extension(name)] = '\0';
 	return name;
 }
 
@@ -287,7 +314,7 @@ enum status result_add_failure(struct csv_table *table, const struct result_sour
 	snprintf(text.text, sizeof text.text, "failed: %s", reason);
 	for (int i = 0; i < options->n_ndf; i++) {
 		struct row *row = row_new(source, options, options->ndf[i], text.text);
-		if (!row || row_finish(row, table, source->path))
+		if (!row || row_finish(row, table, source->path) != STATUS_OK)
 			return STATUS_NO_MEMORY;
 	}
 	return STATUS_OK;
@@ -406,10 +433,10 @@ static enum status result_ndf(char *const *row, const struct ndf_class *class, s
 			}
 		}
 	}
-	if (ndf_init_params(ndf, class, value))
+	if (ndf_init_params(ndf, class, value) != STATUS_OK)
 		return STATUS_DOMAIN;
 	*wrong = RESULT_LAMBDA;
-	if (lambda_form_find(row[RESULT_LAMBDA], &form))
+	if (lambda_form_find(row[RESULT_LAMBDA], &form) != STATUS_OK)
 		return STATUS_DOMAIN;
 	return form == LAMBDA_EXACT ? STATUS_OK : ndf_set_lambda_form(ndf, form);
 }
@@ -424,13 +451,13 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 		return bad_cell(row, RESULT_STATUS, error);
 	if (!ndf)
 		return bad_cell(row, RESULT_NDF, error);
-	if (gaf_find(row[RESULT_GAF], &options->criterion.gaf))
+	if (gaf_find(row[RESULT_GAF], &options->criterion.gaf) != STATUS_OK)
 		return bad_cell(row, RESULT_GAF, error);
-	if (fresnel_find(row[RESULT_FRESNEL], &options->fresnel))
+	if (fresnel_find(row[RESULT_FRESNEL], &options->fresnel) != STATUS_OK)
 		return bad_cell(row, RESULT_FRESNEL, error);
-	if (weight_find(row[RESULT_WEIGHT], &options->criterion.weight))
+	if (weight_find(row[RESULT_WEIGHT], &options->criterion.weight) != STATUS_OK)
 		return bad_cell(row, RESULT_WEIGHT, error);
-	if (bins_find(row[RESULT_BINS], &options->criterion.bins))
+	if (bins_find(row[RESULT_BINS], &options->criterion.bins) != STATUS_OK)
 		return bad_cell(row, RESULT_BINS, error);
 	options->criterion.max_theta = number_or(row, RESULT_MAX_THETA, 90);
 	if (!(options->criterion.max_theta > 0 && options->criterion.max_theta <= 90))
@@ -453,10 +480,10 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 	model->fresnel = options->fresnel;
 	enum result_column wrong;
 	if (ndf_is_tabulated(ndf))
-		return result_nodes(row, options->criterion.bins, &model->ndf, pwl)
+		return result_nodes(row, options->criterion.bins, &model->ndf, pwl) != STATUS_OK
 			       ? bad_cell(row, RESULT_PARAMS, error)
 			       : STATUS_OK;
-	if (result_ndf(row, ndf, &model->ndf, &wrong))
+	if (result_ndf(row, ndf, &model->ndf, &wrong) != STATUS_OK)
 		return bad_cell(row, wrong, error);
 	return STATUS_OK;
 }

@@ -3,6 +3,7 @@
 #ifndef RESULT_H
 #define RESULT_H
 
+#include "data_readers/quantity.h"
 #include "fit/results/csv.h"
 #include "fit/search/fit.h"
 
@@ -76,7 +77,11 @@ bool result_is_input(const char *input, const struct measurement *measurement);
 MUST_CHECK enum status result_check_input(const char *input, const struct measurement *measurement, const char *path,
 					  struct error *error);
 
-/* result_material - newly allocated: the name of a file without its directory and `.binary`, in letters of either case; NULL: out of memory. */
+/* result_reading - how the file of a row was read, as its options tell. */
+struct read_options result_reading(char *const *row, int threads);
+
+/* result_material - newly allocated: the name of a file without its directory and its extension, if that is of a known format;
+ * NULL: out of memory. */
 char *result_material(const char *path);
 
 /* result_add - appends the row of one fitted model. STATUS_NO_MEMORY. */

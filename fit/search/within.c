@@ -199,7 +199,7 @@ static enum status try_lambert(struct selection *s, double percent, bool *chosen
 			continue;
 		const struct fit_options o = variant_options(s->options, v);
 		status = fit_run(s->context, s->measurement, &o, s->result, error);
-		*chosen = !status && s->result->error <= s->limit;
+		*chosen = status == STATUS_OK && s->result->error <= s->limit;
 		if (*chosen)
 			*s->chosen = o;
 	}

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/sources/batch.h"
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/progress.h"
@@ -98,7 +98,10 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 	const struct result_source source = batch_source(run->batch, file);
 	const struct fit_context *context;
 	struct fit_result result[FIT_NDFS_MAX];
-	enum status status = get_context(run, measurement->n_phi_d, &context);
+	enum status status = measurement_require_table(measurement, "the fit", &file->error);
+	if (status != STATUS_OK)
+		return status;
+	status = get_context(run, measurement->n_phi_d, &context);
 	if (status != STATUS_OK)
 		return error_set(&file->error, status, "%s", status_str(status));
 	if (!isnan(options->within))
@@ -108,7 +111,7 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 	if (status != STATUS_OK)
 		return status;
 	for (int i = 0; i < fit->n_ndf; i++) {
-		if (status == STATUS_OK && result_add(&file->rows, &source, fit, &result[i]))
+		if (status == STATUS_OK && result_add(&file->rows, &source, fit, &result[i]) != STATUS_OK)
 			status = error_set(&file->error, STATUS_NO_MEMORY, "out of memory");
 		fit_result_free(&result[i]);
 	}
@@ -125,7 +128,8 @@ static enum status process(struct run *run, struct batch_file *file)
 		fit.trace = trace_note;
 		fit.trace_data = &file->trace;
 	}
-	enum status status = merl_read(file->path, fit.threads, &measurement, &file->error);
+	const struct read_options reading = options_reading(run->batch->options, fit.threads);
+	enum status status = measurement_read(file->path, &reading, &measurement, &file->error);
 	file->unread = status == STATUS_IO || status == STATUS_NO_MEMORY;
 	if (status == STATUS_OK) {
 		result_input(file->input, &measurement);
@@ -154,7 +158,7 @@ static enum status process(struct run *run, struct batch_file *file)
 		/* A disk that is unavailable for a while must not replace earlier fits. */
 		if (file->unread && run->batch->store)
 			drop_known(run->batch, &source, &fit);
-		if (result_add_failure(&file->rows, &source, &fit, file->error.text))
+		if (result_add_failure(&file->rows, &source, &fit, file->error.text) != STATUS_OK)
 			csv_table_free(&file->rows); /* no memory for a row; the message is still reported */
 	}
 	return STATUS_OK;

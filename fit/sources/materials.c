@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/sources/materials.h"
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
+#include "data_readers/resample.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/files.h"
 #include "fit/cli/messages.h"
@@ -116,7 +117,7 @@ static int read_rows(struct csv_table *rows, const struct options *options)
 	if (options->n_paths > 1)
 		return options_usage(options->command, "expected one table and nothing beside it, found %d paths",
 				     options->n_paths);
-	if (!csv_table_read(rows, options->path[0], RESULT_STATUS + 1, NULL, &error)) {
+	if (csv_table_read(rows, options->path[0], RESULT_STATUS + 1, NULL, &error) == STATUS_OK) {
 		if (rows->n_rows)
 			return EXIT_DONE;
 		char name[TEXT_QUOTE_SIZE];
@@ -145,13 +146,13 @@ static int fit_rows(struct csv_table *rows, const struct options *options)
 		report_error("%s", error.text);
 		return EXIT_FAILED;
 	}
-	if (batch_init(&batch, options, &files)) {
+	if (batch_init(&batch, options, &files) != STATUS_OK) {
 		files_free(&files);
 		return EXIT_FAILED;
 	}
 	int code = files.n ? batch_run(&batch) : EXIT_FAILED;
 	for (size_t i = 0; i < batch.n; i++)
-		if (csv_table_move(rows, &batch.file[i].rows)) {
+		if (csv_table_move(rows, &batch.file[i].rows) != STATUS_OK) {
 			report_error("out of memory");
 			code = EXIT_FAILED;
 		}
@@ -179,13 +180,13 @@ int materials_collect(struct materials *materials, const struct options *options
 		table |= csv_is_name(options->path[i]);
 	materials->reported = !table;
 	int code = (table ? read_rows : fit_rows)(&materials->rows, options);
-	if (sort_rows(&materials->rows) || group_rows(materials)) {
+	if (sort_rows(&materials->rows) != STATUS_OK || group_rows(materials) != STATUS_OK) {
 		report_error("out of memory");
 		materials_free(materials);
 		return EXIT_FAILED;
 	}
 	struct error error;
-	if (!table && materials->n && keep_rows(&materials->rows, options->output, &error)) {
+	if (!table && materials->n && keep_rows(&materials->rows, options->output, &error) != STATUS_OK) {
 		report_error("%s", error.text);
 		code = code == EXIT_DONE ? EXIT_FAILED : code;
 	}
@@ -236,7 +237,8 @@ static enum status read_samples(const struct material *material, int threads, st
 				struct error *error)
 {
 	char *const *row = material->row[0];
-	enum status status = merl_read(row[RESULT_PATH], threads, measurement, error);
+	const struct read_options reading = result_reading(row, threads);
+	enum status status = measurement_read(row[RESULT_PATH], &reading, measurement, error);
 	if (status != STATUS_OK)
 		return status;
 	status = result_check_input(row[RESULT_INPUT], measurement, row[RESULT_PATH], error);
@@ -251,6 +253,9 @@ enum status material_read(const struct material *material, int threads, struct m
 	enum status status = read_models(material, threads, data, error);
 	if (status == STATUS_OK)
 		status = read_samples(material, threads, &data->measurement, error);
+	if (status == STATUS_OK &&
+	    measurement_fill(&data->measurement, data->fit[0].options.criterion.bins, threads) != STATUS_OK)
+		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
 	if (status != STATUS_OK)
 		material_data_free(data);
 	return status;
