@@ -113,6 +113,7 @@ static enum stdfit_status read_options(const struct stdfit_options *options, str
 	if (status != STDFIT_OK)
 		return status;
 	inner->criterion.max_theta = options->max_theta;
+	inner->criterion.zero_is_missing = options->zero_is_missing;
 	inner->sigma = options->sigma;
 	inner->gamma = options->gamma;
 	inner->ior = options->n;

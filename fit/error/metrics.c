@@ -92,7 +92,7 @@ static void add_entries(struct row *row, const struct geometry *g, const struct 
 	for (int a = 0; a < count; a++) {
 		const size_t at = measurement_at(g->n_phi_d, 0, g->row[n], k[a]);
 
-		if (isnan(measurement->value[0][at]))
+		if (entry_is_missing(measurement, &g->criterion, at))
 			continue;
 		row->c[row->n] = c;
 		row->lobe[row->n] = lobe;

@@ -196,13 +196,27 @@ static void pass_block(struct objective *o, const struct evaluation *asked, int 
 					&o->sums[block][p]);
 }
 
+/* The same of values that stand in the unit of a sample set. */
+static struct evaluation in_unit(const struct evaluation *asked, double unit)
+{
+	struct evaluation own = *asked;
+
+	for (int p = 0; p < own.n_problems; p++) {
+		own.at[p].d *= unit;
+		own.at[p].ks *= unit;
+		own.at[p].floor *= unit;
+	}
+	return own;
+}
+
 /* One pass over the table; with `lobe`, s is computed on the way, while each block is in cache. The blocks' sums are
  * added in their order: the result is the same to the bit for any number of threads. Tasks, not a parallel loop: on a
  * busy machine this thread then does what the others do not come to, and never waits for one that has not begun. */
-static void pass(struct objective *o, const struct evaluation *asked, bool lobe, struct kernel_sums total[])
+static void pass(struct objective *o, const struct evaluation *wanted, bool lobe, struct kernel_sums total[])
 {
 	enum { CHUNK = 8 };
 	const size_t n_blocks = (size_t)o->table->n_blocks;
+	const struct evaluation own = in_unit(wanted, o->table->unit), *asked = &own;
 
 	o->passes++;
 #pragma GCC diagnostic push
@@ -225,6 +239,9 @@ static void pass(struct objective *o, const struct evaluation *asked, bool lobe,
 			for (int a = 0; a < 3; a++)
 				total[p].curvature[a] += sums->curvature[a];
 		}
+		total[p].error /= o->table->unit;
+		for (int a = 0; a < 3; a++)
+			total[p].curvature[a] *= o->table->unit;
 	}
 }
 

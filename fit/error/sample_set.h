@@ -6,6 +6,7 @@
 #include "fit/error/entries.h"
 #include "fit/error/kernel.h"
 #include "fit/error/options.h"
+#include <math.h>
 #include <stddef.h>
 
 enum { MERL_ROWS = MERL_THETA_H * MERL_THETA_D };
@@ -52,7 +53,8 @@ struct sample_set {
 	float *plane[KERNEL_PLANES]; /* one block of memory */
 	uint32_t *entry;             /* of *scattered */
 	struct sample_range range;
-	float *value;              /* w m; per block: channel by channel, first members, then second ones */
+	float *value;              /* unit w m; per block: channel by channel, first members, then second ones */
+	double unit;               /* a power of two: 1 but for data so faint that floats would be denormal */
 	double sum[MERL_CHANNELS]; /* sum of w m per channel */
 	double sum_w;              /* sum of w over the entries of one channel */
 	size_t n_entries;          /* entries of three channels */
@@ -108,5 +110,15 @@ double weight_of_entry(enum weight weight, double solid_angle, double cos_i, dou
 /* max_theta_cos - the smallest cosine that `max_theta` degrees allow; entry_in_range - whether an entry takes part. */
 double max_theta_cos(double max_theta);
 bool entry_in_range(struct vec3 wi, struct vec3 wo, double min_cos);
+
+/* entry_is_missing - whether the entry at this index of a plane is not measured: masked, or, where zeros count so, 0 in all
+ * channels. */
+static inline bool entry_is_missing(const struct measurement *measurement, const struct criterion *criterion, size_t at)
+{
+	if (isnan(measurement->value[0][at]))
+		return true;
+	return criterion->zero_is_missing && measurement->value[0][at] == 0 && measurement->value[1][at] == 0 &&
+	       measurement->value[2][at] == 0;
+}
 
 #endif
