@@ -2,6 +2,7 @@
 #include "data_readers/measurement_read.h"
 #include "data_readers/alta.h"
 #include "data_readers/cornell.h"
+#include "data_readers/foreign_file.h"
 #include "data_readers/merl.h"
 #include "data_readers/regular_file.h"
 #include "data_readers/rgl.h"
@@ -178,6 +179,9 @@ static enum status unknown(struct error *why)
 static enum status choose(const char *path, const struct head *head, const struct format **format, struct error *why)
 {
 	*format = find(head, MATCH_MAYBE);
+	const char *foreign = *format ? NULL : foreign_file(head->bytes, head->n);
+	if (foreign)
+		return error_set(why, STATUS_FORMAT, "it %s", foreign);
 	for (int i = 0; i < FORMATS && !*format; i++)
 		if (extension_of(&formats[i], path))
 			*format = &formats[i];

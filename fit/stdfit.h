@@ -250,6 +250,7 @@ struct stdfit_options {
 	double blend;          /* 0, or in (0, 1): kd <= 1 - blend, ks <= blend */
 	int unbounded;         /* kd, ks may exceed 1; not with blend */
 	int diffuse, specular; /* whether the model has the terms: one at least */
+	int zero_is_missing;   /* entries that are 0 in all channels count as not measured */
 	int gray;              /* one kd and one ks for all channels */
 	int starts;            /* 0 .. 100000 extra random starts */
 	int threads;           /* 1 .. 1024; changes no result */
@@ -308,8 +309,8 @@ void stdfit_result_clear(struct stdfit_result *result);
 
 typedef struct stdfit_context stdfit_context;
 
-/* stdfit_context_new - what fits of measurements with this n_phi_d share under the options' gaf, weight, bins and
- * max_theta. A fit with others is STDFIT_DOMAIN. */
+/* stdfit_context_new - what fits of measurements with this n_phi_d, 0 for scattered entries, share under the options' gaf,
+ * weight, bins, max_theta and zero_is_missing. A fit with others is STDFIT_DOMAIN. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_context_new(stdfit_context **context, int n_phi_d,
 							const struct stdfit_options *options,
 							struct stdfit_error *error);
@@ -328,8 +329,8 @@ STDFIT_MUST_CHECK enum stdfit_status stdfit_estimate(const stdfit_context *conte
 						     const struct stdfit_options *options, double *estimate,
 						     struct stdfit_error *error);
 
-/* stdfit_compare - the metrics of a model against a measurement, without a fit. Of the options bins, max_theta and threads
- * are read. */
+/* stdfit_compare - the metrics of a model against a measurement, without a fit. Of the options bins, max_theta,
+ * zero_is_missing and threads are read. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_compare(const stdfit_measurement *measurement,
 						    const struct stdfit_model *model, const stdfit_ndf *ndf,
 						    const struct stdfit_options *options,

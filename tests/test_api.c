@@ -76,6 +76,9 @@ static void a_context_refuses_what_it_was_not_made_for(void **state)
 	other.gaf = "v-groove";
 	other.weight = "cosine";
 	expect(fit_with(&options, &other, 180, 180), STDFIT_DOMAIN, "v-groove, weight cosine");
+	other = options;
+	other.zero_is_missing = 1;
+	expect(fit_with(&options, &other, 180, 180), STDFIT_DOMAIN, "zero_is_missing 1: the options say");
 }
 
 static void options_out_of_range_are_refused(void **state)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program itself: exit codes, both streams, bad input, batches, kill and resume. Runs $STDFIT or build/stdfit. */
+#include "fit/cli/stack.h"
 #include "run_program.h"
 #include "src/energy.h"
 
@@ -352,6 +353,17 @@ static void directories_below_are_searched_if_asked(void **state)
 	struct csv_table table = read_table("stdout");
 	assert_int_equal(table.n_rows, 2);
 	assert_string_equal(table.row[0][RESULT_PATH], "tree/top.binary");
+	csv_table_free(&table);
+	/* Where there is nothing but below, -r is mentioned; capitals count. */
+	shell("mkdir upper; ln a.binary upper/A.BINARY");
+	stdfit("tree/b " CHEAP);
+	expect_error(1, "-r takes those in the directories below");
+	shell("mkdir -p hollow/x; exec \"$STDFIT\" hollow");
+	expect_error(1, "no measurement in this directory\n");
+	stdfit("upper --ndf ggx --no-specular");
+	expect_code(0);
+	table = read_table("stdout");
+	assert_string_equal(table.row[0][RESULT_MATERIAL], "A");
 	csv_table_free(&table);
 	stdfit("-r tree/ " CHEAP);
 	expect_code(0);
@@ -707,6 +719,93 @@ static void within_takes_the_simplest(void **state)
 	csv_table_free(&table);
 }
 
+/* Zeros at theta_d of 20 to 49 degrees of the rows 30 to 44 of theta_h. */
+static void dig_a_hole(const char *path)
+{
+	static const double zeros[30 * 180];
+	const int fd = open(path, O_WRONLY);
+	assert_true(fd >= 0);
+	for (int c = 0; c < 3; c++)
+		for (int i = 30; i < 45; i++)
+			assert_int_equal(pwrite(fd, zeros, sizeof zeros, 12 + 8L * 180 * ((c * 90 + i) * 90 + 20)),
+					 sizeof zeros);
+	assert_int_equal(close(fd), 0);
+}
+
+static void faults_of_the_data_are_told(void **state)
+{
+	(void)state;
+	shell("mkdir holes; cp a.binary holes/h.binary");
+	dig_a_hole("holes/h.binary");
+	stdfit("info holes/h.binary a.binary --json");
+	expect_code(0);
+	expect_out("exact zeros beside bright values: --zero-is-missing leaves them out");
+	expect_out("\"suspects\": null");
+	expect_out("\"measured_0\": 1,");
+	stdfit("holes/h.binary a.binary --ndf ggx --no-specular -o holes.csv");
+	expect_code(0);
+	expect_part(last.err, "stdfit: 'holes/h.binary' looks wrong: ", __LINE__);
+	expect_part(last.err, "--zero-is-missing", __LINE__);
+	assert_null(strstr(last.err, "a.binary'"));
+	struct csv_table table = read_table("holes.csv");
+	assert_string_equal(table.row[0][RESULT_SUSPECTS], "");
+	assert_string_equal(table.row[1][RESULT_SUSPECTS], "zeros");
+	csv_table_free(&table);
+	/* The row says that zeros were left out: so resume, merge, compare and eval know. */
+	stdfit("holes/h.binary a.binary --ndf ggx --no-specular --zero-is-missing --resume -o holes.csv");
+	expect_code(0);
+	assert_string_equal(last.err, "");
+	table = read_table("holes.csv");
+	expect_part(table.row[1][RESULT_OPTIONS], " max-theta=90 zero-is-missing=yes unbounded=no", __LINE__);
+	assert_string_equal(table.row[1][RESULT_SUSPECTS], "");
+	assert_true(result_number(table.row[1], RESULT_SAMPLES) < result_number(table.row[0], RESULT_SAMPLES));
+	char *error = strdup(table.row[1][RESULT_ERROR_COSINE]);
+	csv_table_free(&table);
+	stdfit("eval holes/h.binary --from holes.csv");
+	expect_out(error);
+	free(error);
+	shell("mv holes.csv~ before.csv");
+	stdfit("merge holes.csv before.csv -o all.csv");
+	expect_error(1, "zero-is-missing");
+}
+
+static void small_stacks_are_made_larger_or_told(void **state)
+{
+	static const struct {
+		const char *text;
+		size_t bytes; /* 0: no size */
+	} sizes[] = {{"16k", 16384},
+		     {" 16 K ", 16384},
+		     {"16", 16384},
+		     {"1024B", 1024},
+		     {"2M", 2 << 20},
+		     {"1g", 1 << 30},
+		     {"", 0},
+		     {"k", 0},
+		     {"-1", 0},
+		     {"1kk", 0},
+		     {"1x", 0},
+		     {"1 2", 0},
+		     {"99999999999999999999", 0},
+		     {"99999999999G", 0}};
+	(void)state;
+	for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+		size_t bytes = 0;
+		assert_int_equal(stack_parse_size(sizes[s].text, &bytes), sizes[s].bytes > 0);
+		assert_int_equal(bytes, sizes[s].bytes);
+	}
+	shell("ulimit -S -s 128; exec \"$STDFIT\" a.binary --threads 2 -q " CHEAP);
+	expect_code(0);
+	shell("ulimit -s 128; exec \"$STDFIT\" a.binary --threads 2 -q " CHEAP);
+	expect_error(1, "the stack may not grow beyond 128 kB: expected 256 or more (ulimit -s)");
+	shell("OMP_STACKSIZE=16k exec \"$STDFIT\" a.binary --threads 2 -q " CHEAP);
+	expect_error(1, "OMP_STACKSIZE=16k is too small: expected 256K or more, or none");
+	shell("OMP_NUM_THREADS=99999 exec \"$STDFIT\" eval a.binary --kd 0.5");
+	expect_code(0);
+	stdfit("a.binary --threads 99999");
+	expect_error(2, "bad value '99999' for --threads: expected a whole number from 1 to 1024");
+}
+
 static void noise_follows_the_seed(void **state)
 {
 	(void)state;
@@ -746,6 +845,8 @@ int main(void)
 		cmocka_unit_test(a_reader_that_is_gone_ends_it_quietly),
 		cmocka_unit_test(compare_summarises_tables),
 		cmocka_unit_test(within_takes_the_simplest),
+		cmocka_unit_test(faults_of_the_data_are_told),
+		cmocka_unit_test(small_stacks_are_made_larger_or_told),
 		cmocka_unit_test(noise_follows_the_seed),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);

@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 static bool files_add(struct files *files, const char *path)
@@ -105,7 +106,23 @@ struct walk {
 	const atomic_bool *cancel;
 	struct seen seen;
 	int problems; /* already reported; the walk goes on */
+	bool probing; /* only to see whether there is a file: ends with the first, and reports nothing */
 };
+
+/* Directories that a probe goes into at most. */
+enum { PROBED_MAX = 1000 };
+
+static bool is_over(const struct walk *walk)
+{
+	return *walk->cancel || (walk->probing && (walk->files->n || walk->seen.n > PROBED_MAX));
+}
+
+static void walk_problem(struct walk *walk, const char *path, const char *problem)
+{
+	walk->problems++;
+	if (!walk->probing)
+		cannot_read(path, problem);
+}
 
 static int name_order(const struct dirent **a, const struct dirent **b)
 {
@@ -142,10 +159,8 @@ static bool walk_entry(struct walk *walk, const char *path, const char *name)
 	if (is_material(name) && measurement_is_known(path))
 		return files_add(walk->files, path);
 	/* It may be a directory, unless it is a link that leads nowhere. */
-	if (!known && errno != ENOENT && errno != ELOOP) {
-		cannot_read(path, strerror(errno));
-		walk->problems++;
-	}
+	if (!known && errno != ENOENT && errno != ELOOP)
+		walk_problem(walk, path, strerror(errno));
 	return true;
 }
 
@@ -154,19 +169,28 @@ static bool walk_directory(struct walk *walk, const char *path)
 	struct dirent **entry;
 	const int n = scandir(path, &entry, is_visible, name_order);
 	bool stored = true;
-	if (n < 0) {
-		cannot_read(path, strerror(errno));
-		walk->problems++;
-	}
+	if (n < 0)
+		walk_problem(walk, path, strerror(errno));
 	for (int i = 0; i < n; i++) {
-		char *below = stored && !*walk->cancel ? join(path, entry[i]->d_name) : NULL;
-		stored = stored && (*walk->cancel || (below && walk_entry(walk, below, entry[i]->d_name)));
+		char *below = stored && !is_over(walk) ? join(path, entry[i]->d_name) : NULL;
+		stored = stored && (is_over(walk) || (below && walk_entry(walk, below, entry[i]->d_name)));
 		free(below);
 		free(entry[i]);
 	}
 	if (n >= 0)
 		free(entry);
 	return stored;
+}
+
+/* Whether there are files in the directories below. */
+static bool has_files_below(const char *path, const struct stat *info, const atomic_bool *cancel)
+{
+	struct files files = {0};
+	struct walk walk = {.files = &files, .recursive = true, .cancel = cancel, .probing = true};
+	const bool found = seen_add(&walk.seen, info) >= 0 && walk_directory(&walk, path) && files.n;
+	free(walk.seen.entry);
+	files_free(&files);
+	return found;
 }
 
 /* Returns how many problems there were; -1 when out of memory. */
@@ -178,8 +202,10 @@ static int add_directory(struct files *files, const char *path, const struct sta
 	const bool stored = seen_add(&walk.seen, info) >= 0 && walk_directory(&walk, path);
 	free(walk.seen.entry);
 	if (stored && !walk.problems && files->n == before && !*cancel) {
-		cannot_read(path, "no measurement of a known format in this directory");
-		walk.problems++;
+		const bool below = !recursive && has_files_below(path, info, cancel);
+		walk_problem(&walk, path,
+			     below ? "no measurement in this directory itself: -r takes those in the directories below"
+				   : "no measurement of a known format in this directory");
 	}
 	return stored ? walk.problems : -1;
 }

@@ -50,8 +50,9 @@ static const struct command_text commands[COMMAND_COUNT] = {
 			  "comes from options, or from rows of a result table (--from), which also bring their\n"
 			  "G, Fresnel term, bins and largest theta.\n"},
 	[COMMAND_INFO] = {"info", "FILE...", "what is in a measurement: format, validity, ranges, suspects",
-			  "Shows size, hash, valid, negative and non-finite entries, and the range of the valid\n"
-			  "values above the horizon per channel (1/sr).\n"},
+			  "Shows size, hash, valid, negative and non-finite entries, the range of the valid values\n"
+			  "above the horizon per channel (1/sr), the directional albedo of the data at 0, 30 and 60\n"
+			  "degrees with the share of the hemisphere that is measured, and what looks wrong.\n"},
 	[COMMAND_EXPORT] =
 		{"export", "[FILE]", "a model for another program: BRDF Explorer, Mitsuba 3, pbrt-v4, glTF, ...",
 		 "Writes one model: fitted to FILE, from the row of FILE's material in a result table, from\n"

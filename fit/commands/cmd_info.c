@@ -6,6 +6,7 @@
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
 #include "fit/error/census.h"
+#include "fit/error/suspects.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -22,8 +23,10 @@ enum info_column {
 	INFO_NONFINITE,
 	INFO_ABOVE,
 	INFO_VALID_ABOVE,
-	INFO_RANGE, /* min, median, max of red, green, blue */
-	INFO_SUSPECTS = INFO_RANGE + 9,
+	INFO_RANGE,                   /* min, median, max of red, green, blue */
+	INFO_ALBEDO = INFO_RANGE + 9, /* red, green, blue and the share measured, at 0, 30 and 60 degrees */
+	INFO_ENDS_AT = INFO_ALBEDO + 4 * SUSPECTS_ALBEDOS,
+	INFO_SUSPECTS,
 	INFO_FORMAT,
 	INFO_SYMMETRY,
 	INFO_CHANNELS,
@@ -52,6 +55,19 @@ static const struct csv_column columns[INFO_COLUMNS] = {
 	{"min_b", true},
 	{"median_b", true},
 	{"max_b", true},
+	[INFO_ALBEDO] = {"albedo_0_r", true},
+	{"albedo_0_g", true},
+	{"albedo_0_b", true},
+	{"measured_0", true},
+	{"albedo_30_r", true},
+	{"albedo_30_g", true},
+	{"albedo_30_b", true},
+	{"measured_30", true},
+	{"albedo_60_r", true},
+	{"albedo_60_g", true},
+	{"albedo_60_b", true},
+	{"measured_60", true},
+	[INFO_ENDS_AT] = {"ends_at", true},
 	[INFO_SUSPECTS] = {"suspects", false},
 	[INFO_FORMAT] = {"format", false},
 	[INFO_SYMMETRY] = {"symmetry", false},
@@ -59,7 +75,7 @@ static const struct csv_column columns[INFO_COLUMNS] = {
 	[INFO_LEFT_OUT] = {"left_out", false},
 };
 
-enum { SUSPECTS_SIZE = 256 };
+enum { SUSPECTS_SIZE = 256 + SUSPECTS_TEXT };
 
 static void add_count(char *text, const char *what, size_t n)
 {
@@ -70,8 +86,9 @@ static void add_count(char *text, const char *what, size_t n)
 
 /* What a sound measurement does not have. */
 static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *measurement, const struct census *census,
-			   enum gamut gamut)
+			   enum gamut gamut, const struct suspects *suspects)
 {
+	char explained[SUSPECTS_TEXT];
 	const bool zero = census->range[0].max <= 0 && census->range[1].max <= 0 && census->range[2].max <= 0;
 	snprintf(text, SUSPECTS_SIZE, "%s",
 		 !census->valid_above ? "no valid entry above the horizon"
@@ -82,6 +99,10 @@ static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *m
 	add_count(text, "non-finite", measurement->n_nonfinite);
 	if (gamut == GAMUT_CLIP)
 		add_count(text, "out of gamut, set to 0", measurement->n_out_of_gamut);
+	const size_t used = strlen(text);
+	if (suspects->found)
+		snprintf(text + used, SUSPECTS_SIZE - used, "%s%s", used ? "; " : "",
+			 suspects_explain(suspects, explained));
 }
 
 /* Which entries of the file are not among those that count, and why. */
@@ -97,7 +118,7 @@ static void write_left_out(char text[SUSPECTS_SIZE], const struct measurement *m
 }
 
 static enum status add_file(struct csv_table *table, const char *path, const struct measurement *measurement,
-			    const struct census *census, enum gamut gamut)
+			    const struct census *census, enum gamut gamut, const struct suspects *found)
 {
 	const struct scattered *scattered = measurement->scattered;
 	double number[INFO_COLUMNS] = {
@@ -117,13 +138,19 @@ static enum status add_file(struct csv_table *table, const char *path, const str
 		number[INFO_RANGE + 3 * c + 1] = census->range[c].median;
 		number[INFO_RANGE + 3 * c + 2] = census->range[c].max;
 	}
+	for (int a = 0; a < SUSPECTS_ALBEDOS; a++) {
+		for (int c = 0; c < MERL_CHANNELS; c++)
+			number[INFO_ALBEDO + 4 * a + c] = found->albedo[a][c];
+		number[INFO_ALBEDO + 4 * a + 3] = found->measured[a];
+	}
+	number[INFO_ENDS_AT] = found->ends_at;
 	char text[INFO_COLUMNS][CSV_NUMBER_SIZE], hash[CSV_NUMBER_SIZE], suspects[SUSPECTS_SIZE],
 		left_out[SUSPECTS_SIZE];
 	const char *cell[INFO_COLUMNS];
 	for (int c = 0; c < INFO_COLUMNS; c++)
 		cell[c] = csv_number(text[c], number[c]);
 	snprintf(hash, sizeof hash, "%016" PRIx64, measurement->file_hash);
-	write_suspects(suspects, measurement, census, gamut);
+	write_suspects(suspects, measurement, census, gamut, found);
 	cell[INFO_PATH] = path;
 	cell[INFO_HASH] = hash;
 	cell[INFO_SUSPECTS] = suspects;
@@ -139,13 +166,15 @@ static enum status inspect(struct csv_table *table, const struct options *option
 {
 	struct measurement measurement;
 	struct census census;
+	struct suspects suspects;
 	const struct read_options reading = options_reading(options, options->fit.threads);
 	enum status status = measurement_read(path, &reading, &measurement, error);
 	if (status != STATUS_OK)
 		return status;
+	suspects_find(&measurement, &options->fit.criterion, &suspects);
 	status = census_take(&measurement, options->fit.criterion.bins, &census);
 	if (status == STATUS_OK)
-		status = add_file(table, path, &measurement, &census, options->gamut);
+		status = add_file(table, path, &measurement, &census, options->gamut, &suspects);
 	if (status != STATUS_OK)
 		error_set(error, status, "out of memory");
 	measurement_free(&measurement);

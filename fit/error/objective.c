@@ -14,7 +14,11 @@ enum status objective_init(struct objective *o, const struct sample_set *table, 
 	objective_unfix(o);
 	o->s = aligned_alloc(64, (size_t)table->n_blocks * KERNEL_BLOCK * sizeof *o->s);
 	o->sums = malloc((size_t)table->n_blocks * sizeof *o->sums);
-	if (!o->s || !o->sums || masking_init(&o->masking, table->geometry->q_min, density) != STATUS_OK) {
+	o->is_exact = table->scattered && density == MASKING_FINE && table->n_samples <= OBJECTIVE_EXACT_SAMPLES;
+	const enum status status = table->scattered ? scattered_lobe_init(&o->scattered, density)
+						    : masking_init(&o->masking, table->geometry->q_min, density);
+
+	if (!o->s || !o->sums || status != STATUS_OK) {
 		objective_free(o);
 		return STATUS_NO_MEMORY;
 	}
@@ -36,17 +40,34 @@ void objective_begin(struct objective *o, const struct linear *linear)
 void objective_free(struct objective *o)
 {
 	masking_free(&o->masking);
+	scattered_lobe_free(&o->scattered);
 	free(o->s);
 	free(o->sums);
 	o->s = NULL;
 	o->sums = NULL;
 }
 
+struct shape shape_of(const struct cook_torrance *model)
+{
+	const struct ndf *ndf = &model->ndf;
+	struct shape shape = {.sigma = ndf->sigma_x, .gamma = ndf->gamma, .ior = model->n, .k = model->k};
+
+	if (ndf->sigma_x != ndf->sigma_y) {
+		shape.sigma = sqrt(ndf->sigma_x * ndf->sigma_y);
+		shape.stretch = log(ndf->sigma_x / ndf->sigma_y);
+		shape.angle = ndf->angle;
+	}
+	return shape;
+}
+
 enum status shape_ndf(const struct shape *shape, const struct ndf_class *class, enum lambda_form lambda,
 		      struct ndf *ndf)
 {
-	enum status status = ndf_init(ndf, class, shape->sigma, shape->sigma, shape->gamma);
+	const double half = shape->stretch == 0 ? 1 : exp(0.5 * shape->stretch);
+	enum status status = ndf_init(ndf, class, shape->sigma * half, shape->sigma / half, shape->gamma);
 
+	if (status == STATUS_OK && shape->stretch != 0)
+		status = ndf_turn(ndf, shape->angle);
 	if (status == STATUS_OK && lambda != LAMBDA_EXACT)
 		status = ndf_set_lambda_form(ndf, lambda);
 	return status == STATUS_UNSUPPORTED ? STATUS_OK : status;
@@ -55,10 +76,17 @@ enum status shape_ndf(const struct shape *shape, const struct ndf_class *class, 
 static void tabulate_ndf(struct objective *o, const struct ndf *ndf)
 {
 	const struct geometry *g = o->table->geometry;
+	const bool with_masking = o->options->criterion.gaf != GAF_V_GROOVE;
 
+	if (o->table->scattered && o->is_exact && !o->given)
+		o->exact.ndf = *ndf;
+	else if (o->table->scattered)
+		scattered_lobe_ndf(&o->scattered, &o->table->range, ndf, with_masking);
+	if (o->table->scattered && !o->given)
+		return;
 	for (int i = 0; i < MERL_THETA_H; i++)
 		o->D[i] = ndf_D(ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
-	if (o->options->criterion.gaf != GAF_V_GROOVE)
+	if (with_masking && !o->table->scattered)
 		masking_fill(&o->masking, ndf);
 }
 
@@ -74,7 +102,8 @@ static enum status tabulate(struct objective *o, const struct shape *shape)
 
 	const bool same_gamma = shape->gamma == o->tabulated.gamma || !ndf_has_gamma(o->class);
 
-	if (o->given || (shape->sigma == o->tabulated.sigma && same_gamma))
+	if (o->given || (shape->sigma == o->tabulated.sigma && same_gamma && shape->stretch == o->tabulated.stretch &&
+			 shape->angle == o->tabulated.angle))
 		return STATUS_OK;
 	const enum status status = shape_ndf(shape, o->class, o->options->lambda, &ndf);
 
@@ -92,6 +121,17 @@ static void fill_rows(struct objective *o, const struct shape *shape)
 {
 	float F[MERL_THETA_D];
 
+	if (o->table->scattered) {
+		o->exact.gaf = o->options->criterion.gaf;
+		o->exact.fresnel = o->options->fresnel;
+		o->exact.n = shape->ior;
+		o->exact.k = shape->k;
+		if (!o->is_exact || o->given)
+			scattered_lobe_fresnel(&o->scattered, &o->table->range, o->options->fresnel, shape->ior,
+					       shape->k);
+		return;
+	}
+
 	for (int j = 0; j < MERL_THETA_D; j++)
 		F[j] = (float)fresnel_F(o->options->fresnel, o->table->geometry->entries.theta[j].cos_d, shape->ior,
 					shape->k);
@@ -100,11 +140,37 @@ static void fill_rows(struct objective *o, const struct shape *shape)
 			o->row[j + MERL_THETA_D * i] = (float)fmin(o->D[i], ROW_MAX) * F[j];
 }
 
+/* The lobe at the samples of a block, no table involved. */
+static void exact_block(struct objective *o, int block)
+{
+	const struct sample_set *t = o->table;
+	const struct scattered *scattered = t->scattered;
+	const size_t from = (size_t)block * KERNEL_BLOCK;
+
+	for (size_t n = from; n < from + KERNEL_BLOCK; n++) {
+		const struct vec3 wi = scattered->wi[t->entry[n]], wo = scattered->wo[t->entry[n]];
+
+		o->s[n] = t->w[n] > 0 ? (float)fmin((double)t->w[n] * cook_torrance_lobe(&o->exact, wi, wo), 1e30) : 0;
+	}
+}
+
 static void lobe_block(struct objective *o, int block)
 {
 	static const enum kernel_gaf gaf[GAF_COUNT] = {[GAF_UNCORRELATED] = KERNEL_SEPARABLE,
 						       [GAF_CORRELATED] = KERNEL_CORRELATED,
 						       [GAF_V_GROOVE] = KERNEL_STATIC};
+
+	if (o->is_exact && !o->given) {
+		exact_block(o, block);
+		return;
+	}
+	if (o->table->scattered) {
+		const struct kernel_scattered samples = sample_set_scattered_block(o->table, block);
+
+		o->kernel->lobe_scattered(gaf[o->options->criterion.gaf], &o->scattered.shape, &samples,
+					  o->s + (size_t)block * KERNEL_BLOCK);
+		return;
+	}
 	const struct kernel_g1 g1 = masking_kernel(&o->masking);
 	const struct kernel_samples samples = sample_set_block(o->table, block);
 
@@ -130,13 +196,27 @@ static void pass_block(struct objective *o, const struct evaluation *asked, int 
 					&o->sums[block][p]);
 }
 
+/* The same of values that stand in the unit of a sample set. */
+static struct evaluation in_unit(const struct evaluation *asked, double unit)
+{
+	struct evaluation own = *asked;
+
+	for (int p = 0; p < own.n_problems; p++) {
+		own.at[p].d *= unit;
+		own.at[p].ks *= unit;
+		own.at[p].floor *= unit;
+	}
+	return own;
+}
+
 /* One pass over the table; with `lobe`, s is computed on the way, while each block is in cache. The blocks' sums are
  * added in their order: the result is the same to the bit for any number of threads. Tasks, not a parallel loop: on a
  * busy machine this thread then does what the others do not come to, and never waits for one that has not begun. */
-static void pass(struct objective *o, const struct evaluation *asked, bool lobe, struct kernel_sums total[])
+static void pass(struct objective *o, const struct evaluation *wanted, bool lobe, struct kernel_sums total[])
 {
 	enum { CHUNK = 8 };
 	const size_t n_blocks = (size_t)o->table->n_blocks;
+	const struct evaluation own = in_unit(wanted, o->table->unit), *asked = &own;
 
 	o->passes++;
 #pragma GCC diagnostic push
@@ -159,6 +239,9 @@ static void pass(struct objective *o, const struct evaluation *asked, bool lobe,
 			for (int a = 0; a < 3; a++)
 				total[p].curvature[a] += sums->curvature[a];
 		}
+		total[p].error /= o->table->unit;
+		for (int a = 0; a < 3; a++)
+			total[p].curvature[a] *= o->table->unit;
 	}
 }
 

@@ -31,7 +31,7 @@ struct fit_options fit_options_default(void)
 		.ior = NAN,
 		.gamma = NAN,
 		.sigma = NAN,
-		.threads = omp_get_max_threads(),
+		.threads = omp_get_max_threads() < FIT_THREADS_MAX ? omp_get_max_threads() : FIT_THREADS_MAX,
 		.time_s = 10};
 	static const char *const names[] = {"std", "ggx", "beckmann"};
 

@@ -83,6 +83,8 @@ static void write_fitted(FILE *file, const struct export_source *source)
 		", \"weight\": \"%s\", \"bins\": \"%s\", \"max_theta\": ", weight_name(source->fit->criterion.weight),
 		bins_name(source->fit->criterion.bins));
 	write_number(file, source->fit->criterion.max_theta);
+	if (source->fit->criterion.zero_is_missing)
+		fputs(", \"zero_is_missing\": true", file);
 	fputs(", \"error\": ", file);
 	write_number(file, source->error);
 	fputs("}\n", file);

@@ -8,6 +8,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 const struct csv_column result_columns[RESULT_COLUMNS] = {
 	[RESULT_MATERIAL] = {"material", false},
@@ -50,6 +51,7 @@ const struct csv_column result_columns[RESULT_COLUMNS] = {
 	[RESULT_ALBEDO_G] = {"albedo_g", true},
 	[RESULT_ALBEDO_B] = {"albedo_b", true},
 	[RESULT_ENERGY] = {"energy", false},
+	[RESULT_SUSPECTS] = {"suspects", false},
 };
 
 void result_input(char text[RESULT_INPUT_SIZE], const struct measurement *measurement)
@@ -142,6 +144,7 @@ static struct row *row_new(const struct result_source *source, const struct fit_
 	row->cell[RESULT_PATH] = source->path;
 	row->cell[RESULT_INPUT] = source->input;
 	row->cell[RESULT_OPTIONS] = source->options;
+	row->cell[RESULT_SUSPECTS] = source->suspects;
 	row->cell[RESULT_VERSION] = STDFIT_VERSION;
 	return row;
 }
@@ -472,6 +475,7 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 	options->criterion.max_theta = number_or(row, RESULT_MAX_THETA, 90);
 	if (!(options->criterion.max_theta > 0 && options->criterion.max_theta <= 90))
 		return bad_cell(row, RESULT_MAX_THETA, error);
+	options->criterion.zero_is_missing = strstr(row[RESULT_OPTIONS], "zero-is-missing=yes");
 	for (enum result_column c = 0; c < 3; c++) {
 		if (!is_factor(row, RESULT_KD_R + c, RESULT_KD_R))
 			return bad_cell(row, RESULT_KD_R + c, error);

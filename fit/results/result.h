@@ -48,6 +48,7 @@ enum result_column {
 	RESULT_ALBEDO_G,
 	RESULT_ALBEDO_B,
 	RESULT_ENERGY,
+	RESULT_SUSPECTS,
 	RESULT_COLUMNS
 };
 
@@ -62,8 +63,9 @@ double result_metric(const struct fit_metrics *metrics, enum result_column colum
 /* struct result_source - what the rows of one file share. */
 struct result_source {
 	const char *path;
-	const char *input;   /* "<size>:<hash>", see result_input(); "" when it is no MERL file, NULL when not known */
-	const char *options; /* canonical text of every option that changes the result */
+	const char *input;    /* "<size>:<hash>", see result_input(); "" when it is no MERL file, NULL when not known */
+	const char *options;  /* canonical text of every option that changes the result */
+	const char *suspects; /* suspects_words(); NULL: none, or not looked for */
 };
 
 enum { RESULT_INPUT_SIZE = 40 };
@@ -99,7 +101,8 @@ bool result_one_row_a_file(char *const *row);
 /* result_number - the value of a number column; NaN when empty. */
 double result_number(char *const *row, enum result_column column);
 
-/* result_model - the model that a row describes, and the options (G, Fresnel, bins, max_theta, weight) under which it
+/* result_model - the model that a row describes, and the options (G, Fresnel, bins, max_theta, zero_is_missing,
+ * weight) under which it
  * was fitted. What a row leaves empty the model has not: kd = 0 or ks = 0. STATUS_FORMAT when the row is of a failed
  * fit or describes no model; `error` then says what is wrong in it. */
 MUST_CHECK enum status result_model(char *const *row, struct cook_torrance *model, struct fit_options *options,
