@@ -359,7 +359,7 @@ static void directories_below_are_searched_if_asked(void **state)
 	stdfit("tree/b " CHEAP);
 	expect_error(1, "-r takes those in the directories below");
 	shell("mkdir -p hollow/x; exec \"$STDFIT\" hollow");
-	expect_error(1, "no measurement in this directory\n");
+	expect_error(1, "no measurement of a known format in this directory\n");
 	stdfit("upper --ndf ggx --no-specular");
 	expect_code(0);
 	table = read_table("stdout");
