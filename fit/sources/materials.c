@@ -263,7 +263,7 @@ static enum status read_models(const struct material *material, int threads, str
 		data->n++;
 		const enum status status = result_model(row, &fit->model, &fit->options, &fit->pwl, &why);
 		if (status != STATUS_OK)
-			return error_set(error, status, "cannot show '%s', %.16s: %.200s", name, fit->ndf, why.text);
+			return error_set(error, status, "cannot show '%s': %.200s", name, why.text);
 	}
 	if (data->n == 0)
 		return error_set(error, STATUS_NO_DATA, "cannot show '%s': it has no fit", name);
