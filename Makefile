@@ -41,6 +41,7 @@ lib_objects := $(lib_sources:%.c=$(BUILD)/%.o)
 CFLAGS_kernel := -O3 -Wno-psabi
 CFLAGS_kernel_avx2 := $(CFLAGS_kernel) -mavx2 -DKERNEL_NAME=kernel_avx2
 CFLAGS_metrics := -O3
+CFLAGS_octave_table := -O3
 CFLAGS_bench := -O3
 # The mathematics raises no floating-point exception in its domain; the compiler may not speculate one either.
 $(BUILD)/src/%.o: fpflags := -fno-math-errno -ftrapping-math -ffp-contract=off
@@ -59,7 +60,7 @@ endif
 test_sources := $(wildcard tests/test_*.c)
 test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 # Attacks on inputs, outputs and memory, and fits of hard tables: half of the time of all tests.
-only_long := alloc fetch free_form hostile hostile_names hostile_outputs slurm stiff
+only_long := alloc convert fetch free_form hostile hostile_names hostile_outputs outputs resample slurm stiff
 # Some cases in check, all in check-long: check.h, case_step().
 with_long_cases := fit objective suspects
 short_programs := $(filter-out $(only_long:%=$(BUILD)/tests/test_%),$(test_programs))

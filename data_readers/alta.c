@@ -98,7 +98,7 @@ struct head {
 
 static enum status take_input(struct head *head, const char *word, const struct line_reader *lines, struct error *why)
 {
-	char shown[TEXT_QUOTE_SIZE], known[TEXT_QUOTE_SIZE] = "";
+	char shown[WORD_SIZE], known[TEXT_QUOTE_SIZE] = "";
 	for (int i = 0; i < INPUTS; i++) {
 		if (!strcmp(word, inputs[i].name))
 			head->input = &inputs[i];
@@ -107,7 +107,7 @@ static enum status take_input(struct head *head, const char *word, const struct 
 	}
 	text_quote(word, shown, sizeof shown);
 	if (!head->input)
-		return line_error(lines, why, "expected PARAM_IN %s, found '%.60s'", known, shown);
+		return line_error(lines, why, "expected PARAM_IN %s, found '%s'", known, shown);
 	return STATUS_OK;
 }
 
@@ -165,7 +165,7 @@ static enum status take_line(struct head *head, const char *line, const struct l
 static enum status check_head(struct head *head, const struct line_reader *lines, const struct read_options *options,
 			      struct error *why)
 {
-	char shown[TEXT_QUOTE_SIZE];
+	char shown[WORD_SIZE];
 	for (int i = 0; i < OUTPUTS; i++)
 		if (!strcmp(head->output_word, outputs[i].name))
 			head->output = &outputs[i];
@@ -179,7 +179,7 @@ static enum status check_head(struct head *head, const struct line_reader *lines
 		return line_error(
 			lines, why,
 			"expected PARAM_OUT INV_STERADIAN, INV_STERADIAN_COSINE_FACTOR, RGB_COLOR or XYZ_COLOR, "
-			"or --quantity, found '%.60s'",
+			"or --quantity, found '%s'",
 			shown);
 	if (!head->output)
 		head->output = &outputs[0];

@@ -2,7 +2,9 @@
 #include "data_readers/entry_list.h"
 #include "data_readers/solid_angle.h"
 #include <float.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { BLOCK = 4096 };
 
@@ -103,16 +105,33 @@ static void move_entries(struct entry_list *list, struct scattered *s)
 	list->last = NULL;
 }
 
+/* What became of the entries when none is left. */
+static void no_entry(const struct entry_list *list, struct error *why)
+{
+	const struct {
+		size_t n;
+		const char *what;
+	} counts[] = {{list->n_below_horizon, "at or below the horizon"},
+		      {list->n_negative, "negative"},
+		      {list->n_nonfinite, "not finite"},
+		      {list->n_missing, "not measured"},
+		      {list->n_out_of_gamut, "out of gamut"}};
+	char text[256] = "";
+	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+		const size_t used = strlen(text);
+		if (counts[i].n)
+			snprintf(text + used, sizeof text - used, "%s%zu %s", used ? ", " : "", counts[i].n,
+				 counts[i].what);
+	}
+	error_set(why, STATUS_NO_DATA, "no sample can be used: %s", text[0] ? text : "there is none");
+}
+
 enum status entry_list_finish(struct entry_list *list, struct measurement *measurement, struct error *why)
 {
 	enum status status = STATUS_NO_DATA;
 	*measurement = (struct measurement){0};
 	if (!list->n) {
-		error_set(why, status,
-			  "no usable entry: %zu at or below the horizon, %zu negative, %zu not finite, %zu missing, "
-			  "%zu out of gamut",
-			  list->n_below_horizon, list->n_negative, list->n_nonfinite, list->n_missing,
-			  list->n_out_of_gamut);
+		no_entry(list, why);
 	} else {
 		status = measurement_scattered(measurement, list->n);
 		if (status != STATUS_OK)

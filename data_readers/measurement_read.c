@@ -85,10 +85,17 @@ struct head {
 	size_t n;
 };
 
+/* Without the mark that some programs put before UTF-8. */
+static const char *text_of(const struct head *head)
+{
+	static const char mark[] = "\xef\xbb\xbf";
+	return head->bytes + (strncmp(head->bytes, mark, sizeof mark - 1) ? 0 : sizeof mark - 1);
+}
+
 static enum match match_of(const struct format *format, const struct head *head)
 {
 	if (format->lines)
-		return memchr(head->bytes, '\0', head->n) ? MATCH_NONE : format->lines->detect(head->bytes);
+		return memchr(head->bytes, '\0', head->n) ? MATCH_NONE : format->lines->detect(text_of(head));
 	return format->magic && head->n >= format->magic_size && !memcmp(head->bytes, format->magic, format->magic_size)
 		       ? MATCH_SURE
 		       : MATCH_NONE;

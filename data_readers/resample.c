@@ -14,7 +14,7 @@ enum {
 #define FAR 40.0  /* no entry reaches farther than this */
 #define NEAR 1e-4 /* entries within this of a point are at it */
 #define CELL 0.5  /* half a cell of the table: always near */
-#define REACH 1.0 /* times the distance to the fourth neighbour */
+#define REACH 1.5 /* times the distance to the fourth neighbour */
 #define LOOK 2.0  /* times the reach: how far entries to average may be */
 #define DEGREES (180 / M_PI)
 

@@ -26,7 +26,7 @@ struct resampled {
  *          theta_h or theta_d is small and phi_d means little: the BRDF changes the fastest with theta_h. Of the four sides
  *          of a point in the first two of these, the nearest two entries each are averaged, with the reciprocal square of
  *          the distance for weight, so that an entry at the point is reproduced. Outside is what is farther from the
- *          nearest entry than that is from its fourth neighbour, and half a cell more; or has a
+ *          nearest entry than 1.5 times its distance from its fourth neighbour, and half a cell more; or has a
  *          larger theta_i or theta_o than was measured.
  * Returns: STATUS_OK; STATUS_NO_MEMORY, STATUS_DOMAIN (n_phi_d); *table is then cleared. The size, the hash and the counts of the
  *          file go along. `result` may be NULL. */

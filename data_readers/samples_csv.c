@@ -244,7 +244,7 @@ static enum status bad_field(const struct line_reader *lines, const struct layou
 			     const char *found, struct error *why)
 {
 	const int target = layout->target[column];
-	char word[NAME_MAX_SIZE], shown[2 * TEXT_QUOTE_SIZE / 3];
+	char word[NAME_MAX_SIZE], shown[2 * NAME_MAX_SIZE];
 	snprintf(word, sizeof word, "%.*s", (int)strcspn(found, ",; \t"), found);
 	text_quote(word, shown, sizeof shown);
 	if (target < FIELDS)

@@ -5,7 +5,7 @@
 
 enum {
 	ANGLES = 4,
-	SAMPLE = 31,     /* entries that tell where the middle is */
+	SAMPLE = 15,     /* entries that tell where the middle is */
 	DEPTH_MAX = 400, /* never reached but by rounding */
 };
 
@@ -75,20 +75,18 @@ static void share_cell(const struct cutting *cutting, const struct point *point,
 		cutting->scattered->solid_angle[point[p].entry] = share;
 }
 
-static int float_order(const void *a, const void *b)
-{
-	const float x = *(const float *)a, y = *(const float *)b;
-	return (x > y) - (x < y);
-}
-
 /* About the median in this angle. */
 static float middle_of(const struct point *point, size_t n, int angle)
 {
 	float sample[SAMPLE];
 	const size_t count = n < SAMPLE ? n : SAMPLE;
-	for (size_t i = 0; i < count; i++)
-		sample[i] = point[i * n / count + (n / count) / 2].angle[angle];
-	qsort(sample, count, sizeof *sample, float_order);
+	for (size_t i = 0; i < count; i++) {
+		const float at = point[i * n / count + (n / count) / 2].angle[angle];
+		size_t place = i;
+		for (; place > 0 && sample[place - 1] > at; place--)
+			sample[place] = sample[place - 1];
+		sample[place] = at;
+	}
 	return sample[count / 2];
 }
 

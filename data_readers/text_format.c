@@ -107,7 +107,7 @@ enum status line_numbers(const struct line_reader *lines, const char *line, doub
 		double number;
 		const char *start = line;
 		if (!text_number(&line, &number) || (*line && *line != ' ' && *line != '\t')) {
-			char word[32], shown[TEXT_QUOTE_SIZE];
+			char word[32], shown[64];
 			snprintf(word, sizeof word, "%.*s", (int)strcspn(start, " \t"), start);
 			text_quote(word, shown, sizeof shown);
 			return line_error(lines, why, "expected a number, found '%s'", shown);

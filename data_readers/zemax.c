@@ -104,7 +104,7 @@ static enum status read_axis(struct line_reader *lines, const struct words *word
 static enum status take_word(struct grid *grid, const struct words *words, const struct line_reader *lines,
 			     struct error *why)
 {
-	char shown[TEXT_QUOTE_SIZE];
+	char shown[WORD_SIZE];
 	text_quote(words->second, shown, sizeof shown);
 	if (!strcmp(words->first, "Symmetry"))
 		grid->half = !strcmp(words->second, "PlaneSymmetrical");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "src/ndf.h"
 #include "src/ndf_class.h"
+#include "src/ndf_formulas.h"
 #include "src/pwl.h"
 #include "src/student_t.h"
 #include <string.h>
@@ -140,15 +141,30 @@ bool ndf_plain(const struct ndf *ndf, struct ndf *plain)
 	return ndf_init(plain, ggx ? &ndf_class_ggx : &ndf_class_beckmann, sigma, sigma, NAN) == STATUS_OK;
 }
 
+enum status ndf_turn(struct ndf *ndf, double degrees)
+{
+	if (!isfinite(degrees))
+		return STATUS_DOMAIN;
+	const double angle = remainder(degrees, 180.0); /* exact; -90 and 90 are one axis */
+	double sine, cosine;
+
+	sincos_deg(fabs(angle), &sine, &cosine);
+	ndf->angle = angle == -90.0 ? 90.0 : angle;
+	ndf->turn_cos = cosine;
+	ndf->turn_sin = ndf->angle < 0.0 ? -sine : sine;
+	return STATUS_OK;
+}
+
 double ndf_D(const struct ndf *ndf, struct vec3 m)
 {
-	return m.z <= 0.0 ? 0.0 : ndf->class->D(ndf, m);
+	return m.z <= 0.0 ? 0.0 : ndf->class->D(ndf, ndf_to_axes(ndf, m));
 }
 
 double ndf_lambda(const struct ndf *ndf, struct vec3 w)
 {
 	if (w.z <= 0.0)
 		return INFINITY;
+	w = ndf_to_axes(ndf, w);
 	if (ndf->lambda_form != LAMBDA_EXACT)
 		return lambda_form_lambda(ndf->lambda_form, ndf->gamma, ndf->lambda_K, student_t_z(ndf, w));
 	return ndf->class->lambda(ndf, w);
@@ -165,7 +181,8 @@ struct vec3 ndf_sample(const struct ndf *ndf, double u1, double u2)
 		return pwl_sample(ndf->pwl, u1, u2);
 	const double s = ndf->class->tilt(ndf, u2);
 	const double turn = 2.0 * M_PI * u1;
-	return vec3_unit((struct vec3){ndf->sigma_x * s * cos(turn), ndf->sigma_y * s * sin(turn), 1.0});
+	return ndf_from_axes(ndf,
+			     vec3_unit((struct vec3){ndf->sigma_x * s * cos(turn), ndf->sigma_y * s * sin(turn), 1.0}));
 }
 
 double ndf_pdf(const struct ndf *ndf, struct vec3 m)

@@ -72,6 +72,9 @@ struct ndf {
 	double A;         /* gtr, low: factor of D */
 	double log_width; /* gtr, low: ln of the median slope, */
 	double far;       /* and a slope beyond which D hardly changes up to the horizon */
+	/* Set by ndf_turn(). */
+	double angle; /* of the axis of sigma_x: its azimuth in degrees, (-90, 90]; 0: the axes are x and y */
+	double turn_cos, turn_sin; /* of it; read only where angle is not 0 */
 };
 
 /* ndf_find - the class called `name` ("std", "ggx", ...), or NULL. */
@@ -120,6 +123,12 @@ MUST_CHECK enum status ndf_set_lambda_form(struct ndf *ndf, enum lambda_form for
 /* ndf_plain - GGX or Beckmann, into *plain, where an isotropic distribution is one of them under another name: the same D
  * and Lambda to rounding. Returns: false, *plain untouched, where it is neither, or has the rational form of Lambda. */
 bool ndf_plain(const struct ndf *ndf, struct ndf *plain);
+
+/* ndf_turn - turns the axes of the roughness about the normal: that of sigma_x, which is x after ndf_init(), gets the
+ * azimuth `degrees`. In all that follows a direction's azimuth counts from there.
+ * Given:   degrees finite; turns of 180 degrees make no difference
+ * Returns: STATUS_DOMAIN, *ndf untouched, for NaN and infinities. */
+MUST_CHECK enum status ndf_turn(struct ndf *ndf, double degrees);
 
 /* ndf_D - density of microfacet normals, 1/sr.
  *     beckmann   exp(-q) / (pi sigma_x sigma_y cos^4)                        q = tan^2 (cos^2 phi/sigma_x^2 +

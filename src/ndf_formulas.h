@@ -13,6 +13,21 @@
 
 #include "src/ndf.h"
 
+/* A direction as the axes of the roughness see it, and back. */
+static inline struct vec3 ndf_to_axes(const struct ndf *ndf, struct vec3 v)
+{
+	if (ndf->angle == 0.0)
+		return v;
+	return (struct vec3){ndf->turn_cos * v.x + ndf->turn_sin * v.y, ndf->turn_cos * v.y - ndf->turn_sin * v.x, v.z};
+}
+
+static inline struct vec3 ndf_from_axes(const struct ndf *ndf, struct vec3 v)
+{
+	if (ndf->angle == 0.0)
+		return v;
+	return (struct vec3){ndf->turn_cos * v.x - ndf->turn_sin * v.y, ndf->turn_cos * v.y + ndf->turn_sin * v.x, v.z};
+}
+
 /* An unevaluated sum, |lo| <= ulp(hi)/2. */
 struct dd {
 	double hi, lo;

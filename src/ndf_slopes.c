@@ -10,6 +10,7 @@ double ndf_P22(const struct ndf *ndf, double p, double q)
 
 static double sigma_along(const struct ndf *ndf, double phi)
 {
+	phi -= ndf->angle * (M_PI / 180.0);
 	return hypot(ndf->sigma_x * cos(phi), ndf->sigma_y * sin(phi));
 }
 

@@ -147,6 +147,7 @@ struct vec3 vndf_sample(const struct ndf *ndf, struct vec3 wi, double u1, double
 {
 	if (!vndf_supports(ndf) || isnan(wi.x + wi.y + wi.z))
 		return (struct vec3){NAN, NAN, NAN};
+	wi = ndf_to_axes(ndf, wi);
 	wi.z = wi.z < NDF_COS_MIN ? NDF_COS_MIN : wi.z;
 	const double sigma_x = ndf->sigma_x / ndf->stretch, sigma_y = ndf->sigma_y / ndf->stretch; /* of std */
 	const double x = sigma_x * wi.x, y = sigma_y * wi.y;
@@ -159,7 +160,7 @@ struct vec3 vndf_sample(const struct ndf *ndf, struct vec3 wi, double u1, double
 	m.z = m.z < NDF_COS_MIN ? NDF_COS_MIN : m.z;
 	/* The rounding of m can turn the very last bit of wi.m. */
 	const double cos_d = vec3_dot(wi, m);
-	return cos_d < 0.0 ? vec3_sub(m, vec3_scale(wi, 2.0 * cos_d)) : m;
+	return ndf_from_axes(ndf, cos_d < 0.0 ? vec3_sub(m, vec3_scale(wi, 2.0 * cos_d)) : m);
 }
 
 double vndf_pdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m)

@@ -32,7 +32,10 @@ enum status vndf_pseudo_init(struct vndf_pseudo *pseudo, const struct ndf *ndf)
 	const double sigma_x = ndf->sigma_x / ndf->stretch, sigma_y = ndf->sigma_y / ndf->stretch; /* of std */
 	const char *name = substitute(sqrt(sigma_x * sigma_y), ndf->gamma);
 	*pseudo = (struct vndf_pseudo){*ndf, name != NULL};
-	return name ? ndf_init(&pseudo->proposal, ndf_find(name), sigma_x, sigma_y, NAN) : STATUS_OK;
+	if (!name)
+		return STATUS_OK;
+	const enum status status = ndf_init(&pseudo->proposal, ndf_find(name), sigma_x, sigma_y, NAN);
+	return status == STATUS_OK ? ndf_turn(&pseudo->proposal, ndf->angle) : status;
 }
 
 struct vec3 vndf_pseudo_sample(const struct vndf_pseudo *pseudo, struct vec3 wi, double u1, double u2)

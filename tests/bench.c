@@ -105,7 +105,7 @@ static volatile double sink;
 static void bench_kernel(const struct sample_set *table, const struct fit_options *options, const char *ndf,
 			 int threads)
 {
-	const struct shape shape = {0.2, 1.7, 1.5, 0};
+	const struct shape shape = {0.2, 1.7, 1.5, 0, 0, 0};
 	double t_stream[REPEATS], t_pass[REPEATS], t_curved[REPEATS], t_stream_geo[REPEATS], t_model[REPEATS];
 	struct objective o;
 

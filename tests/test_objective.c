@@ -95,7 +95,7 @@ static double kernel_error(const struct kernel *kernel, const struct geometry *g
 			   const struct measurement *measurement, const struct cook_torrance *model,
 			   const struct fit_options *o, enum masking_density density)
 {
-	const struct shape shape = {model->ndf.sigma_x, model->ndf.gamma, model->n, 0};
+	const struct shape shape = {model->ndf.sigma_x, model->ndf.gamma, model->n, 0, 0, 0};
 	struct objective objective;
 	struct sample_set table;
 	double error = 0, sum = 0;
@@ -219,7 +219,7 @@ static void thinned_tables_estimate_the_error(void **state)
 {
 	const struct fit_options o = options_with(GAF_UNCORRELATED, WEIGHT_NONE, BINS_NODE, 90);
 	const struct cook_torrance truth = make_model("std", 0.05, 1.7, 1.6);
-	const struct shape shapes[] = {{0.05, 2, 1.6, 0}, {0.2, 2, 1.2, 0}, {0.01, 2, 20, 0}};
+	const struct shape shapes[] = {{0.05, 2, 1.6, 0, 0, 0}, {0.2, 2, 1.2, 0, 0, 0}, {0.01, 2, 20, 0, 0, 0}};
 	struct measurement measurement = make_table(&truth, 180, BINS_NODE, 0.3);
 	struct geometry geometry;
 	struct sample_set full, thin;

@@ -144,8 +144,9 @@ enum stdfit_status stdfit_context_new(stdfit_context **context, int n_phi_d, con
 		return api_fail(error, STATUS_DOMAIN, "context is NULL");
 	*context = NULL;
 	status = read_options(options, &inner, error);
-	if (status == STDFIT_OK && n_phi_d != 180 && n_phi_d != 360)
-		status = api_fail(error, STATUS_DOMAIN, "expected n_phi_d 180 or 360, found %d", n_phi_d);
+	if (status == STDFIT_OK && n_phi_d != 0 && n_phi_d != 180 && n_phi_d != 360)
+		status = api_fail(error, STATUS_DOMAIN,
+				  "expected n_phi_d 180 or 360, or 0 for scattered entries, found %d", n_phi_d);
 	if (status != STDFIT_OK)
 		return status;
 	stdfit_context *made = calloc(1, sizeof *made);
@@ -225,12 +226,8 @@ static enum stdfit_status check_fit(const stdfit_context *context, const stdfit_
 				    const struct stdfit_options *options, struct fit_options *inner,
 				    struct stdfit_error *error)
 {
-	struct error why;
-
 	if (!context || !measurement)
 		return api_fail(error, STATUS_DOMAIN, "%s is NULL", context ? "measurement" : "context");
-	if (measurement_require_table(&measurement->grid, "the fit", &why) != STATUS_OK)
-		return api_end(error, STATUS_UNSUPPORTED, &why);
 	return read_options(options, inner, error);
 }
 
@@ -298,10 +295,7 @@ enum stdfit_status stdfit_compare(const stdfit_measurement *measurement, const s
 		status = api_fail(error, STATUS_DOMAIN, "measurement or metrics is NULL");
 	if (status != STDFIT_OK)
 		return status;
-	enum status end = measurement_require_table(&measurement->grid, "the comparison", &why);
-
-	if (end == STATUS_OK)
-		end = fit_eval(&measurement->grid, &inner_model, &inner, &m, &why);
+	const enum status end = fit_eval(&measurement->grid, &inner_model, &inner, &m, &why);
 
 	if (end == STATUS_OK)
 		*metrics = public_metrics(&m);

@@ -205,7 +205,7 @@ static int add_directory(struct files *files, const char *path, const struct sta
 		const bool below = !recursive && has_files_below(path, info, cancel);
 		walk_problem(&walk, path,
 			     below ? "no measurement in this directory itself: -r takes those in the directories below"
-				   : "no measurement in this directory");
+				   : "no measurement of a known format in this directory");
 	}
 	return stored ? walk.problems : -1;
 }
@@ -328,16 +328,4 @@ bool files_same(const char *a, const char *b)
 	char in_a[PATH_MAX], in_b[PATH_MAX];
 	return !strcmp(split(a, in_a), split(b, in_b)) && find_id(in_a, &x, &regular) && find_id(in_b, &y, &regular) &&
 	       !id_order(&x, &y);
-}
-
-bool files_has(const struct files *files, const char *path)
-{
-	struct id file, other;
-	bool regular;
-	if (!find_id(path, &file, &regular) || !regular)
-		return false;
-	for (size_t i = 0; i < files->n; i++)
-		if (find_id(files->path[i], &other, &regular) && !id_order(&file, &other))
-			return true;
-	return false;
 }

@@ -20,9 +20,10 @@ struct options {
 	enum command command;
 	enum quantity quantity; /* of a file that may have another than it says */
 	enum gamut gamut;
-	const char *output; /* NULL: standard output */
-	const char *trace;  /* a CSV of the course of each search; NULL: none */
-	struct shard shard; /* .n = 0: all files */
+	const char *output;      /* NULL: standard output */
+	bool to_standard_output; /* which was asked for by a name, as in -o - */
+	const char *trace;       /* a CSV of the course of each search; NULL: none */
+	struct shard shard;      /* .n = 0: all files */
 	bool json, quiet, resume, recursive, readable;
 	double within; /* percent; NaN: every NDF as it is */
 	/* A model, for eval and synth; its sigma, gamma and ior are those of `fit`. */
@@ -82,7 +83,7 @@ MUST_CHECK int options_model(const struct options *options, struct cook_torrance
 MUST_CHECK int options_check_fit(const struct options *options);
 
 /* options_show - what a command prints on standard output: JSON if asked for, readable text if asked for or on a
- * terminal, else CSV. With -o only a terminal or --table gets anything. */
+ * terminal, else CSV. With -o only a terminal or --table gets anything; -o - is CSV unless --table asks for text. */
 enum show options_show(const struct options *options);
 
 /* options_end - ends a command that makes one table: prints the table as options_show() says, `readable` printing the

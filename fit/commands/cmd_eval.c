@@ -74,8 +74,6 @@ static enum status evaluate_all(struct evaluation *e, const struct options *opti
 	const struct read_options reading = options_reading(options, options->fit.threads);
 	enum status status = measurement_read(e->path, &reading, &e->measurement, error);
 	if (status == STATUS_OK)
-		status = measurement_require_table(&e->measurement, "eval", error);
-	if (status == STATUS_OK)
 		status = model_source_read(options, e->path, &source, error);
 	if (status != STATUS_OK)
 		return status;

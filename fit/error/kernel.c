@@ -80,6 +80,75 @@ static void lobe(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *r
 	}
 }
 
+static inline float curve_at(const struct kernel_curve *curve, const float *restrict value, float x)
+{
+	const float y = x + curve->offset, above = y > curve->first ? y : curve->first;
+	const union {
+		float f;
+		int32_t i;
+	} bits = {above < curve->last ? above : curve->last};
+	const int32_t at = bits.i - curve->first_bits, index = at >> curve->shift;
+	const float fraction = (float)(at & ((1 << curve->shift) - 1)) * (1.0F / (float)(1 << curve->shift));
+
+	return value[index] + fraction * (value[index + 1] - value[index]);
+}
+
+static inline float form_at(const struct kernel_form *form, float x, float y)
+{
+	const float a = form->xx * x + form->xy * y, b = form->yx * x + form->yy * y;
+
+	return a * a + b * b;
+}
+
+/* The largest that s may be: a sum of some is still a float. Only entries within 1e-6 of the horizon come near. */
+#define LOBE_MAX 1e30F
+
+__attribute__((always_inline)) static inline void scattered(enum kernel_gaf gaf, const struct kernel_shape *shape,
+							    const struct kernel_scattered *samples, float *restrict s)
+{
+	const struct kernel_shape of = *shape;
+	const float *restrict P22 = of.P22.value, *restrict G1 = of.G1.value, *restrict F = of.F.value;
+	const float *restrict h_x = samples->plane[KERNEL_H_X], *restrict h_y = samples->plane[KERNEL_H_Y],
+			      *restrict i_x = samples->plane[KERNEL_I_X], *restrict i_y = samples->plane[KERNEL_I_Y],
+			      *restrict o_x = samples->plane[KERNEL_O_X], *restrict o_y = samples->plane[KERNEL_O_Y],
+			      *restrict cos_d = samples->plane[KERNEL_COS_D],
+			      *restrict geometric_factor = samples->geometric_factor;
+
+#pragma omp simd
+	for (int n = 0; n < KERNEL_BLOCK; n++) {
+		float G = 1;
+
+		if (gaf != KERNEL_STATIC) {
+			const float i = curve_at(&of.G1, G1, form_at(&of.masking, i_x[n], i_y[n])),
+				    o = curve_at(&of.G1, G1, form_at(&of.masking, o_x[n], o_y[n])),
+				    below = i + o - i * o;
+
+			/* As in lobe_correlated(). */
+			G = gaf == KERNEL_SEPARABLE ? i * o : below > 0 ? i * o / below : 0;
+		}
+		const float P = of.scale * curve_at(&of.P22, P22, form_at(&of.slopes, h_x[n], h_y[n]));
+		const float value = geometric_factor[n] * (P * curve_at(&of.F, F, cos_d[n]) * G);
+
+		s[n] = value < LOBE_MAX ? value : LOBE_MAX;
+	}
+}
+
+static void lobe_scattered(enum kernel_gaf gaf, const struct kernel_shape *shape,
+			   const struct kernel_scattered *samples, float *s)
+{
+	switch (gaf) {
+	case KERNEL_SEPARABLE:
+		scattered(KERNEL_SEPARABLE, shape, samples, s);
+		break;
+	case KERNEL_CORRELATED:
+		scattered(KERNEL_CORRELATED, shape, samples, s);
+		break;
+	case KERNEL_STATIC:
+		scattered(KERNEL_STATIC, shape, samples, s);
+		break;
+	}
+}
+
 /* Eight lanes, whatever the machine has: a compiler without registers this wide makes two operations of each. Sums
  * are kept lane by lane, so both kernels add in the same order. */
 typedef float lanes __attribute__((vector_size(32), may_alias));
@@ -233,4 +302,4 @@ static void pass(int members, const float *m, const float *w, const float *s, co
 	}
 }
 
-const struct kernel KERNEL_NAME = {NAME_TEXT(KERNEL_NAME), lobe, pass};
+const struct kernel KERNEL_NAME = {NAME_TEXT(KERNEL_NAME), lobe, lobe_scattered, pass};

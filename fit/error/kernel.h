@@ -35,6 +35,47 @@ struct kernel_samples {
 	const uint16_t *row;
 };
 
+/* A function of one number x, tabulated over octaves of y = x + offset: entry (bits of y - first_bits) >> shift of `value` and the
+ * one above, between which one interpolates linearly. y below `first` counts as that, y above `last` as that. */
+struct kernel_curve {
+	const float *value;
+	float offset, first, last;
+	int32_t first_bits;
+	int shift;
+};
+
+/* The geometry of scattered entries: slopes of h (normal of a facet that reflects wi to wo) along x and y, tan theta of wi and
+ * wo times cosine and sine of their azimuth, and cos theta_d. */
+enum kernel_plane {
+	KERNEL_H_X,
+	KERNEL_H_Y,
+	KERNEL_I_X,
+	KERNEL_I_Y,
+	KERNEL_O_X,
+	KERNEL_O_Y,
+	KERNEL_COS_D,
+	KERNEL_PLANES
+};
+
+/* One block of scattered samples. */
+struct kernel_scattered {
+	const float *plane[KERNEL_PLANES];
+	const float *geometric_factor; /* w / (4 cos_i cos_o cos_h^4), times G for KERNEL_STATIC */
+};
+
+/* x^2 + y^2 of a matrix times a vector. */
+struct kernel_form {
+	float xx, xy, yx, yy;
+};
+
+/* The lobe of one shape for them: `scale` times P22 over the form `slopes` of h, G1 over the form `masking` of wi and wo, F over
+ * cos_d. */
+struct kernel_shape {
+	float scale;
+	struct kernel_form slopes, masking;
+	struct kernel_curve P22, G1, F;
+};
+
 /* Where a pass evaluates the error: d = kd/pi and ks. tau: relative width of the window in which the curvature is estimated, 0 for none;
  * floor: added to the model, in units of the weight, where the window's width is concerned. */
 struct kernel_evaluation {
@@ -53,6 +94,9 @@ struct kernel {
 	/* lobe - s = geometric_factor row[.] G for one block. */
 	void (*lobe)(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *row,
 		     const struct kernel_samples *samples, float *s);
+	/* lobe_scattered - the same of scattered samples: s = geometric_factor scale P22 F G. */
+	void (*lobe_scattered)(enum kernel_gaf gaf, const struct kernel_shape *shape,
+			       const struct kernel_scattered *samples, float *s);
 	/* pass - sums of one block. Of each sample it takes `members` values, KERNEL_BLOCK apart: 1 of a single and 2 of a
 	 * pair for one channel, 3 or 6 for the three channels under one kd and ks. */
 	void (*pass)(int members, const float *value, const float *w, const float *s,

@@ -13,8 +13,7 @@ int32_t masking_q(struct vec3 w)
 	return (int32_t)lrint((q < MASKING_Q_MAX ? q : MASKING_Q_MAX) * (1 << MASKING_Q_BITS));
 }
 
-/* Lagrange's weights of six equidistant nodes for the point t, 0 <= t < 1, between the third and the fourth. */
-static void six_weights(double t, double weight[6])
+void six_weights(double t, double weight[6])
 {
 	const double a = t + 2, b = t + 1, c = t, d = t - 1, e = t - 2, f = t - 3;
 

@@ -39,6 +39,9 @@ void masking_free(struct masking *masking);
 /* masking_fill - tabulates an isotropic distribution. */
 void masking_fill(struct masking *masking, const struct ndf *ndf);
 
+/* six_weights - Lagrange's weights of six equidistant nodes for the point t, 0 <= t < 1, between the third and the fourth. */
+void six_weights(double t, double weight[6]);
+
 /* masking_kernel - the table as the kernel reads it. */
 struct kernel_g1 masking_kernel(const struct masking *masking);
 

@@ -143,6 +143,53 @@ static double lobe_at(const struct parts *p, const struct geometry *g, int n, do
 				     masking_at(&p->masking, g->q_o[n]), c);
 }
 
+static void add_sums(struct sums *all, const struct sums *sums)
+{
+	for (int w = 0; w < WEIGHT_COUNT; w++) {
+		all->difference[w] += sums->difference[w];
+		all->measured[w] += sums->measured[w];
+	}
+	all->square += sums->square;
+	all->cube_root += sums->cube_root;
+	all->log += sums->log;
+	all->n += sums->n;
+}
+
+/* A scattered entry that takes part is a row of its own; no table is used. */
+static void sum_scattered(const struct scattered *s, const struct cook_torrance *model, size_t n, struct sums *sums)
+{
+	struct row row = {.n = 1};
+
+	row.c[0] = s->wi[n].z * s->wo[n].z;
+	row.lobe[0] = cook_torrance_lobe(model, s->wi[n], s->wo[n]);
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		row.m[c][0] = (double)s->value[c][n];
+	sum_row(&row, model, (double)s->solid_angle[n], sums);
+}
+
+/* Sums of so many entries each: whatever the number of threads, they are added in the same order. */
+enum { CHUNK = 1024 };
+
+static enum status sum_all_scattered(const struct geometry *g, const struct scattered *s,
+				     const struct cook_torrance *model, int threads, struct sums *all)
+{
+	const double min_cos = max_theta_cos(g->criterion.max_theta);
+	const size_t chunks = (s->n + CHUNK - 1) / CHUNK;
+	struct sums *sums = calloc(chunks, sizeof *sums);
+
+	if (!sums)
+		return STATUS_NO_MEMORY;
+#pragma omp parallel for num_threads(threads) schedule(dynamic) if (threads > 1)
+	for (size_t chunk = 0; chunk < chunks; chunk++)
+		for (size_t n = chunk * CHUNK; n < (chunk + 1) * CHUNK && n < s->n; n++)
+			if (entry_in_range(s->wi[n], s->wo[n], min_cos))
+				sum_scattered(s, model, n, &sums[chunk]);
+	for (size_t chunk = 0; chunk < chunks; chunk++)
+		add_sums(all, &sums[chunk]);
+	free(sums);
+	return STATUS_OK;
+}
+
 /* One theta_h, all its rows into sums[0] or each into sums[its theta_d]. */
 static void sum_theta_h(const struct geometry *g, const struct measurement *measurement,
 			const struct cook_torrance *model, const struct parts *parts, int i, bool by_row,
@@ -163,10 +210,10 @@ static void sum_theta_h(const struct geometry *g, const struct measurement *meas
 	}
 }
 
-enum status metrics_compute(const struct geometry *g, const struct measurement *measurement,
-			    const struct cook_torrance *model, int threads, struct fit_metrics *metrics)
+static enum status sum_table(const struct geometry *g, const struct measurement *measurement,
+			     const struct cook_torrance *model, int threads, struct sums *all)
 {
-	struct sums sums[MERL_THETA_H] = {{.n = 0}}, all = {.n = 0};
+	struct sums sums[MERL_THETA_H] = {{.n = 0}};
 	struct parts parts;
 
 	if (parts_init(&parts, g, model) != STATUS_OK)
@@ -175,16 +222,21 @@ enum status metrics_compute(const struct geometry *g, const struct measurement *
 	for (int i = 0; i < MERL_THETA_H; i++)
 		sum_theta_h(g, measurement, model, &parts, i, false, &sums[i]);
 	masking_free(&parts.masking);
-	for (int i = 0; i < MERL_THETA_H; i++) {
-		for (int w = 0; w < WEIGHT_COUNT; w++) {
-			all.difference[w] += sums[i].difference[w];
-			all.measured[w] += sums[i].measured[w];
-		}
-		all.square += sums[i].square;
-		all.cube_root += sums[i].cube_root;
-		all.log += sums[i].log;
-		all.n += sums[i].n;
-	}
+	for (int i = 0; i < MERL_THETA_H; i++)
+		add_sums(all, &sums[i]);
+	return STATUS_OK;
+}
+
+enum status metrics_compute(const struct geometry *g, const struct measurement *measurement,
+			    const struct cook_torrance *model, int threads, struct fit_metrics *metrics)
+{
+	struct sums all = {.n = 0};
+	const enum status status = measurement->scattered
+					   ? sum_all_scattered(g, measurement->scattered, model, threads, &all)
+					   : sum_table(g, measurement, model, threads, &all);
+
+	if (status != STATUS_OK)
+		return status;
 	if (!(all.measured[WEIGHT_COSINE] > 0))
 		return STATUS_NO_DATA;
 	for (int w = 0; w < WEIGHT_COUNT; w++)
@@ -196,20 +248,39 @@ enum status metrics_compute(const struct geometry *g, const struct measurement *
 	return STATUS_OK;
 }
 
+/* Each entry in the row of a table with nodes that is next to it. */
+static void sum_scattered_rows(const struct geometry *g, const struct scattered *s, const struct cook_torrance *model,
+			       struct sums *sums)
+{
+	const double min_cos = max_theta_cos(g->criterion.max_theta);
+
+	for (size_t n = 0; n < s->n; n++) {
+		const struct bins_indices at = bins_indices(BINS_NODE, halfdiff_from_dirs(s->wi[n], s->wo[n]));
+		const int i = (int)fmin(at.i + 0.5, MERL_THETA_H - 1), j = (int)fmin(at.j + 0.5, MERL_THETA_D - 1);
+
+		if (entry_in_range(s->wi[n], s->wo[n], min_cos))
+			sum_scattered(s, model, n, &sums[j + MERL_THETA_D * i]);
+	}
+}
+
 enum status metrics_rows(const struct geometry *g, const struct measurement *measurement,
 			 const struct cook_torrance *model, int threads, struct metrics_row row[MERL_ROWS])
 {
 	struct sums *sums = calloc(MERL_ROWS, sizeof *sums);
 	struct parts parts;
 
-	if (!sums || parts_init(&parts, g, model) != STATUS_OK) {
+	if (!sums || (!measurement->scattered && parts_init(&parts, g, model) != STATUS_OK)) {
 		free(sums);
 		return STATUS_NO_MEMORY;
 	}
+	if (measurement->scattered) {
+		sum_scattered_rows(g, measurement->scattered, model, sums);
+	} else {
 #pragma omp parallel for num_threads(threads) schedule(dynamic) if (threads > 1)
-	for (int i = 0; i < MERL_THETA_H; i++)
-		sum_theta_h(g, measurement, model, &parts, i, true, sums + (size_t)i * MERL_THETA_D);
-	masking_free(&parts.masking);
+		for (int i = 0; i < MERL_THETA_H; i++)
+			sum_theta_h(g, measurement, model, &parts, i, true, sums + (size_t)i * MERL_THETA_D);
+		masking_free(&parts.masking);
+	}
 	for (int n = 0; n < MERL_ROWS; n++)
 		row[n] = (struct metrics_row){sums[n].difference[g->criterion.weight],
 					      sums[n].measured[g->criterion.weight], sums[n].n};

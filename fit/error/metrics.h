@@ -14,7 +14,7 @@ struct fit_metrics {
 	size_t samples;             /* table entries (of three channels) compared */
 };
 
-/* metrics_compute - compares `model` with the entries of `samples` that `geometry` has and that are valid.
+/* metrics_compute - of scattered entries, those within the criterion of `geometry`, without tables; of a table, it compares `model` with the entries of `samples` that `geometry` has and that are valid.
  * Accuracy: relative error below 1e-7 of each metric against a sum of exact model values.
  * Errors: STATUS_NO_DATA when no entry is valid or all are zero, STATUS_NO_MEMORY. */
 MUST_CHECK enum status metrics_compute(const struct geometry *geometry, const struct measurement *measurement,
@@ -28,7 +28,7 @@ struct metrics_row {
 	size_t samples;    /* valid entries of three channels; 0: nothing is known here */
 };
 
-/* metrics_rows - row[theta_d index + 90 theta_h index]: the sums that E is made of. The sum of all differences over that
+/* metrics_rows - scattered entries count to the nearest node of a table; row[theta_d index + 90 theta_h index]: the sums that E is made of. The sum of all differences over that
  * of all measured is E as metrics_compute() gives it, to rounding. STATUS_NO_MEMORY. */
 MUST_CHECK enum status metrics_rows(const struct geometry *geometry, const struct measurement *measurement,
 				    const struct cook_torrance *model, int threads, struct metrics_row row[MERL_ROWS]);

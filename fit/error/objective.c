@@ -14,7 +14,11 @@ enum status objective_init(struct objective *o, const struct sample_set *table, 
 	objective_unfix(o);
 	o->s = aligned_alloc(64, (size_t)table->n_blocks * KERNEL_BLOCK * sizeof *o->s);
 	o->sums = malloc((size_t)table->n_blocks * sizeof *o->sums);
-	if (!o->s || !o->sums || masking_init(&o->masking, table->geometry->q_min, density) != STATUS_OK) {
+	o->is_exact = table->scattered && density == MASKING_FINE && table->n_samples <= OBJECTIVE_EXACT_SAMPLES;
+	const enum status status = table->scattered ? scattered_lobe_init(&o->scattered, density)
+						    : masking_init(&o->masking, table->geometry->q_min, density);
+
+	if (!o->s || !o->sums || status != STATUS_OK) {
 		objective_free(o);
 		return STATUS_NO_MEMORY;
 	}
@@ -36,17 +40,34 @@ void objective_begin(struct objective *o, const struct linear *linear)
 void objective_free(struct objective *o)
 {
 	masking_free(&o->masking);
+	scattered_lobe_free(&o->scattered);
 	free(o->s);
 	free(o->sums);
 	o->s = NULL;
 	o->sums = NULL;
 }
 
+struct shape shape_of(const struct cook_torrance *model)
+{
+	const struct ndf *ndf = &model->ndf;
+	struct shape shape = {.sigma = ndf->sigma_x, .gamma = ndf->gamma, .ior = model->n, .k = model->k};
+
+	if (ndf->sigma_x != ndf->sigma_y) {
+		shape.sigma = sqrt(ndf->sigma_x * ndf->sigma_y);
+		shape.stretch = log(ndf->sigma_x / ndf->sigma_y);
+		shape.angle = ndf->angle;
+	}
+	return shape;
+}
+
 enum status shape_ndf(const struct shape *shape, const struct ndf_class *class, enum lambda_form lambda,
 		      struct ndf *ndf)
 {
-	enum status status = ndf_init(ndf, class, shape->sigma, shape->sigma, shape->gamma);
+	const double half = shape->stretch == 0 ? 1 : exp(0.5 * shape->stretch);
+	enum status status = ndf_init(ndf, class, shape->sigma * half, shape->sigma / half, shape->gamma);
 
+	if (status == STATUS_OK && shape->stretch != 0)
+		status = ndf_turn(ndf, shape->angle);
 	if (status == STATUS_OK && lambda != LAMBDA_EXACT)
 		status = ndf_set_lambda_form(ndf, lambda);
 	return status == STATUS_UNSUPPORTED ? STATUS_OK : status;
@@ -55,10 +76,17 @@ enum status shape_ndf(const struct shape *shape, const struct ndf_class *class, 
 static void tabulate_ndf(struct objective *o, const struct ndf *ndf)
 {
 	const struct geometry *g = o->table->geometry;
+	const bool with_masking = o->options->criterion.gaf != GAF_V_GROOVE;
 
+	if (o->table->scattered && o->is_exact && !o->given)
+		o->exact.ndf = *ndf;
+	else if (o->table->scattered)
+		scattered_lobe_ndf(&o->scattered, &o->table->range, ndf, with_masking);
+	if (o->table->scattered && !o->given)
+		return;
 	for (int i = 0; i < MERL_THETA_H; i++)
 		o->D[i] = ndf_D(ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
-	if (o->options->criterion.gaf != GAF_V_GROOVE)
+	if (with_masking && !o->table->scattered)
 		masking_fill(&o->masking, ndf);
 }
 
@@ -74,7 +102,8 @@ static enum status tabulate(struct objective *o, const struct shape *shape)
 
 	const bool same_gamma = shape->gamma == o->tabulated.gamma || !ndf_has_gamma(o->class);
 
-	if (o->given || (shape->sigma == o->tabulated.sigma && same_gamma))
+	if (o->given || (shape->sigma == o->tabulated.sigma && same_gamma && shape->stretch == o->tabulated.stretch &&
+			 shape->angle == o->tabulated.angle))
 		return STATUS_OK;
 	const enum status status = shape_ndf(shape, o->class, o->options->lambda, &ndf);
 
@@ -92,6 +121,17 @@ static void fill_rows(struct objective *o, const struct shape *shape)
 {
 	float F[MERL_THETA_D];
 
+	if (o->table->scattered) {
+		o->exact.gaf = o->options->criterion.gaf;
+		o->exact.fresnel = o->options->fresnel;
+		o->exact.n = shape->ior;
+		o->exact.k = shape->k;
+		if (!o->is_exact || o->given)
+			scattered_lobe_fresnel(&o->scattered, &o->table->range, o->options->fresnel, shape->ior,
+					       shape->k);
+		return;
+	}
+
 	for (int j = 0; j < MERL_THETA_D; j++)
 		F[j] = (float)fresnel_F(o->options->fresnel, o->table->geometry->entries.theta[j].cos_d, shape->ior,
 					shape->k);
@@ -100,11 +140,37 @@ static void fill_rows(struct objective *o, const struct shape *shape)
 			o->row[j + MERL_THETA_D * i] = (float)fmin(o->D[i], ROW_MAX) * F[j];
 }
 
+/* The lobe at the samples of a block, no table involved. */
+static void exact_block(struct objective *o, int block)
+{
+	const struct sample_set *t = o->table;
+	const struct scattered *scattered = t->scattered;
+	const size_t from = (size_t)block * KERNEL_BLOCK;
+
+	for (size_t n = from; n < from + KERNEL_BLOCK; n++) {
+		const struct vec3 wi = scattered->wi[t->entry[n]], wo = scattered->wo[t->entry[n]];
+
+		o->s[n] = t->w[n] > 0 ? (float)fmin((double)t->w[n] * cook_torrance_lobe(&o->exact, wi, wo), 1e30) : 0;
+	}
+}
+
 static void lobe_block(struct objective *o, int block)
 {
 	static const enum kernel_gaf gaf[GAF_COUNT] = {[GAF_UNCORRELATED] = KERNEL_SEPARABLE,
 						       [GAF_CORRELATED] = KERNEL_CORRELATED,
 						       [GAF_V_GROOVE] = KERNEL_STATIC};
+
+	if (o->is_exact && !o->given) {
+		exact_block(o, block);
+		return;
+	}
+	if (o->table->scattered) {
+		const struct kernel_scattered samples = sample_set_scattered_block(o->table, block);
+
+		o->kernel->lobe_scattered(gaf[o->options->criterion.gaf], &o->scattered.shape, &samples,
+					  o->s + (size_t)block * KERNEL_BLOCK);
+		return;
+	}
 	const struct kernel_g1 g1 = masking_kernel(&o->masking);
 	const struct kernel_samples samples = sample_set_block(o->table, block);
 
@@ -228,13 +294,12 @@ static bool within_twice(double a, double b)
 	return !(a > 2 * b) && !(b > 2 * a); /* NaN: a parameter that the model lacks */
 }
 
-void objective_jump(struct objective *o, const struct shape *to)
+/* Whether the inner solve of one shape helps that of another. Second derivatives go with the square of the lobe: handed on
+ * to a lobe far smaller, they make a Newton step that is far too short look like the last one. And the ks of a low lobe is
+ * no place to begin where the lobe is so high that its own is 1e-8: the way there is too long for a quadratic model. */
+static bool helps(const struct shape *a, const struct shape *b)
 {
-	const struct shape *from = &o->start.shape;
-
-	if (!within_twice(from->sigma, to->sigma) || !within_twice(from->ior - 1, to->ior - 1) ||
-	    !within_twice(from->k, to->k))
-		memset(o->start.h, 0, sizeof o->start.h);
+	return within_twice(a->sigma, b->sigma) && within_twice(a->ior - 1, b->ior - 1) && within_twice(a->k, b->k);
 }
 
 /* The mean measurement of a problem. */
@@ -249,8 +314,11 @@ static double mean_measured(const struct objective *o, int p)
 #define PRECISE 1e-5
 
 /* With one kd and ks for all channels there is one problem, their sum; else one a channel. */
-static void start(const struct objective *o, struct l1 problem[], int n_problems, double tolerance, bool certify)
+static void start(const struct objective *o, const struct shape *shape, struct l1 problem[], int n_problems,
+		  double tolerance, bool certify)
 {
+	const bool precise = tolerance < PRECISE;
+	const bool afresh = isnan(o->start.kd[0]) || (precise && !helps(&o->start.shape, shape));
 	const double *sum = o->table->sum;
 
 	for (int p = 0; p < n_problems; p++) {
@@ -258,13 +326,13 @@ static void start(const struct objective *o, struct l1 problem[], int n_problems
 		const double scale = n_problems == 1 ? sum[0] + sum[1] + sum[2] : sum[p];
 		const double known[2] = {o->start.kd[p] / M_PI, o->start.ks[p]};
 		const bool faint = sum[p] > 0 && mean_measured(o, p) < L1_FAR * fmax(box->hi[0], box->hi[1]);
-		const bool cold = isnan(o->start.kd[0]) || faint, at_zero = box->lo[0] == 0 && box->lo[1] == 0;
+		const bool cold = afresh || faint, at_zero = box->lo[0] == 0 && box->lo[1] == 0;
 
 		l1_start(&problem[p], box->lo, box->hi,
 			 !cold     ? known
 			 : at_zero ? NULL
 				   : box->lo,
-			 !cold && tolerance < PRECISE ? o->start.h[p] : NULL, scale, tolerance, certify);
+			 !cold && precise ? o->start.h[p] : NULL, scale, tolerance, certify);
 	}
 }
 
@@ -316,7 +384,7 @@ double objective_eval(struct objective *o, const struct shape *shape, double tol
 		return OBJECTIVE_NO_FIT;
 	}
 	fill_rows(o, shape);
-	start(o, problem, n_problems, tolerance, certify);
+	start(o, shape, problem, n_problems, tolerance, certify);
 	while (going) {
 		struct evaluation asked = {.n_problems = n_problems};
 

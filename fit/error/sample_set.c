@@ -17,6 +17,13 @@ double weight_at(enum weight weight, int i, int j, double cos_i, double cos_o)
 	}
 }
 
+double weight_of_entry(enum weight weight, double solid_angle, double cos_i, double cos_o)
+{
+	if (weight == WEIGHT_NONE)
+		return 1;
+	return cos_i * cos_o * (weight == WEIGHT_SOLID_ANGLE ? solid_angle : 1);
+}
+
 int geometry_members(const struct geometry *geometry, int n, int k[4])
 {
 	const int first = geometry->k[n], second = bins_mirror(geometry->criterion.bins, first);
@@ -100,6 +107,8 @@ enum status geometry_init(struct geometry *g, int n_phi_d, const struct fit_opti
 	*g = (struct geometry){
 		.n_phi_d = n_phi_d, .criterion = options->criterion, .q_min = MASKING_Q_MAX << MASKING_Q_BITS};
 	g->entries = entries_make(g->criterion.bins, n_phi_d);
+	if (n_phi_d == 0)
+		return STATUS_OK;
 #pragma omp parallel for num_threads(options->threads) schedule(dynamic)
 	for (int i = 0; i < MERL_THETA_H; i++)
 		g->first[i + 1] = row_samples(g, i, min_cos, -1);
@@ -131,7 +140,27 @@ void geometry_free(struct geometry *g)
 	*g = (struct geometry){0};
 }
 
-static enum status table_alloc(struct sample_set *table, const struct geometry *geometry, int n_pairs, int n_singles)
+static enum status alloc_scattered(struct sample_set *table, size_t samples)
+{
+	table->plane[0] = aligned_alloc(64, KERNEL_PLANES * samples * sizeof *table->plane[0]);
+	table->entry = aligned_alloc(64, samples * sizeof *table->entry);
+	if (!table->plane[0] || !table->entry)
+		return STATUS_NO_MEMORY;
+	for (size_t p = 1; p < KERNEL_PLANES; p++)
+		table->plane[p] = table->plane[0] + p * samples;
+	return STATUS_OK;
+}
+
+static enum status alloc_of_table(struct sample_set *table, size_t samples)
+{
+	table->q_i = aligned_alloc(64, samples * sizeof *table->q_i);
+	table->q_o = aligned_alloc(64, samples * sizeof *table->q_o);
+	table->row = aligned_alloc(64, samples * sizeof *table->row);
+	return table->q_i && table->q_o && table->row ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+enum status sample_set_alloc(struct sample_set *table, const struct geometry *geometry,
+			     const struct scattered *scattered, int n_pairs, int n_singles)
 {
 	const int pair_blocks = (n_pairs + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
 	const int single_blocks = (n_singles + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
@@ -139,17 +168,17 @@ static enum status table_alloc(struct sample_set *table, const struct geometry *
 	const size_t values = (size_t)(2 * pair_blocks + single_blocks) * MERL_CHANNELS * KERNEL_BLOCK;
 
 	*table = (struct sample_set){.geometry = geometry,
+				     .scattered = scattered,
 				     .n_blocks = pair_blocks + single_blocks,
 				     .n_pair_blocks = pair_blocks,
 				     .unit = 1,
 				     .n_samples = n_pairs + n_singles};
-	table->q_i = aligned_alloc(64, samples * sizeof *table->q_i);
-	table->q_o = aligned_alloc(64, samples * sizeof *table->q_o);
+	const enum status status = scattered ? alloc_scattered(table, samples) : alloc_of_table(table, samples);
+
 	table->geometric_factor = aligned_alloc(64, samples * sizeof *table->geometric_factor);
 	table->w = aligned_alloc(64, samples * sizeof *table->w);
-	table->row = aligned_alloc(64, samples * sizeof *table->row);
 	table->value = aligned_alloc(64, values * sizeof *table->value);
-	if (!table->q_i || !table->q_o || !table->geometric_factor || !table->w || !table->row || !table->value) {
+	if (status != STATUS_OK || !table->geometric_factor || !table->w || !table->value) {
 		sample_set_free(table);
 		return STATUS_NO_MEMORY;
 	}
@@ -163,6 +192,8 @@ void sample_set_free(struct sample_set *table)
 	free(table->geometric_factor);
 	free(table->w);
 	free(table->row);
+	free(table->plane[0]);
+	free(table->entry);
 	free(table->value);
 	*table = (struct sample_set){0};
 }
@@ -171,9 +202,15 @@ void sample_set_free(struct sample_set *table)
 static void pad(struct sample_set *table, size_t from, int end_block)
 {
 	for (size_t n = from; n < (size_t)end_block * KERNEL_BLOCK; n++) {
-		table->q_i[n] = table->q_o[n] = MASKING_Q_MAX << MASKING_Q_BITS;
 		table->geometric_factor[n] = table->w[n] = 0;
-		table->row[n] = 0;
+		if (table->scattered) {
+			for (int p = 0; p < KERNEL_PLANES; p++)
+				table->plane[p][n] = 1;
+			table->entry[n] = 0;
+		} else {
+			table->q_i[n] = table->q_o[n] = MASKING_Q_MAX << MASKING_Q_BITS;
+			table->row[n] = 0;
+		}
 		for (int c = 0; c < MERL_CHANNELS; c++) {
 			float *value = sample_set_value(table, (int)(n / KERNEL_BLOCK), c) + n % KERNEL_BLOCK;
 
@@ -295,8 +332,8 @@ static void keep_in_range(struct sample_set *table)
 	table->sum_w *= scale;
 }
 
-enum status sample_set_init(struct sample_set *table, const struct geometry *g, const struct measurement *measurement,
-			    int threads)
+static enum status take_table(struct sample_set *table, const struct geometry *g, const struct measurement *measurement,
+			      int threads, size_t *pairs, size_t *singles)
 {
 	struct fill fill[MERL_THETA_H + 1] = {0};
 	enum status status;
@@ -319,7 +356,7 @@ enum status sample_set_init(struct sample_set *table, const struct geometry *g, 
 
 	if (n_pairs + n_singles == 0)
 		return STATUS_NO_DATA;
-	status = table_alloc(table, g, (int)n_pairs, (int)n_singles);
+	status = sample_set_alloc(table, g, NULL, (int)n_pairs, (int)n_singles);
 	if (status != STATUS_OK)
 		return status;
 	for (int i = 0; i < MERL_THETA_H; i++)
@@ -329,6 +366,25 @@ enum status sample_set_init(struct sample_set *table, const struct geometry *g, 
 		table->unit = FAINT_UNIT;
 		take_values(table, measurement, threads, fill);
 	}
+	*pairs = n_pairs;
+	*singles = n_singles;
+	return STATUS_OK;
+}
+
+enum status sample_set_init(struct sample_set *table, const struct geometry *g, const struct measurement *measurement,
+			    int threads)
+{
+	size_t n_pairs = 0, n_singles = 0;
+	enum status status;
+
+	if (measurement->scattered) {
+		status = sample_set_scattered(table, g, measurement->scattered);
+		n_singles = status == STATUS_OK ? (size_t)table->n_samples : 0;
+	} else {
+		status = take_table(table, g, measurement, threads, &n_pairs, &n_singles);
+	}
+	if (status != STATUS_OK)
+		return status;
 	table->n_entries = MERL_CHANNELS * (2 * n_pairs + n_singles);
 	pad_all(table, n_pairs, n_singles);
 	if (!(table->sum[0] + table->sum[1] + table->sum[2] > 0)) {
@@ -383,9 +439,15 @@ static void scale_to(float *p, size_t count, double n_samples)
 static void copy_sample(struct sample_set *to, size_t b, const struct sample_set *from, size_t a, int members,
 			float scale)
 {
-	to->q_i[b] = from->q_i[a];
-	to->q_o[b] = from->q_o[a];
-	to->row[b] = from->row[a];
+	if (to->scattered) {
+		for (int p = 0; p < KERNEL_PLANES; p++)
+			to->plane[p][b] = from->plane[p][a];
+		to->entry[b] = from->entry[a];
+	} else {
+		to->q_i[b] = from->q_i[a];
+		to->q_o[b] = from->q_o[a];
+		to->row[b] = from->row[a];
+	}
 	to->geometric_factor[b] = from->geometric_factor[a] * scale;
 	to->w[b] = from->w[a] * scale;
 	for (int c = 0; c < MERL_CHANNELS; c++) {
@@ -423,7 +485,7 @@ enum status sample_set_thin(struct sample_set *table, const struct sample_set *f
 	scale_to(p, count, fmin(n_samples, full->n_samples));
 	for (size_t n = 0; n < count; n++)
 		n_selected[n >= pairs_end] += is_selected(p, n, &running);
-	status = table_alloc(table, full->geometry, (int)n_selected[0], (int)n_selected[1]);
+	status = sample_set_alloc(table, full->geometry, full->scattered, (int)n_selected[0], (int)n_selected[1]);
 	if (status != STATUS_OK)
 		goto out;
 	to[0] = 0;
@@ -437,6 +499,7 @@ enum status sample_set_thin(struct sample_set *table, const struct sample_set *f
 	table->sum_w = full->sum_w;
 	table->unit = full->unit;
 	table->n_entries = full->n_entries;
+	table->range = full->range;
 out:
 	free(p);
 	return status;

@@ -11,7 +11,8 @@
 
 enum { MERL_ROWS = MERL_THETA_H * MERL_THETA_D };
 
-/* struct geometry - everything about a kind of table that no material changes: its samples, row by row.
+/* struct geometry - everything about a kind of measurement that no material changes. Of scattered entries, n_phi_d = 0, that is
+ * the criterion alone; of a table also its samples, row by row.
  * Sample n stands for the entries k of row (i, j) with the same model value: k, half - k, half + k, 2 half - k. */
 struct geometry {
 	int n_phi_d;
@@ -27,30 +28,48 @@ struct geometry {
 	struct entries entries;
 };
 
-/* geometry_init - the samples above the horizon and within max_theta, under the options' weight, bins and G. */
+/* geometry_init - n_phi_d = 0, 180 or 360: the samples above the horizon and within max_theta, under the options' weight, bins and G. */
 MUST_CHECK enum status geometry_init(struct geometry *geometry, int n_phi_d, const struct fit_options *options);
 void geometry_free(struct geometry *geometry);
 /* geometry_members - entries k of sample n, two or four of them (equal ones once), into k[]. Returns how many. */
 int geometry_members(const struct geometry *geometry, int n, int k[4]);
 
+/* struct sample_range - what the directions of scattered samples come to: the least and the greatest squared tan theta of h, and of
+ * wi and wo; the least cos theta_d. */
+struct sample_range {
+	double h_min, h_max, w_min, w_max, cos_d_min;
+};
+
 /* struct sample_set - the valid entries of one material, or a weighted sample of them. */
 struct sample_set {
 	const struct geometry *geometry;
-	int n_blocks, n_pair_blocks; /* blocks of pairs stand first, then blocks of singles */
-	int n_samples;               /* samples in use, padding left out */
-	int32_t *q_i, *q_o;          /* n_blocks * KERNEL_BLOCK of each */
+	const struct scattered *scattered; /* where the samples come from; borrowed; NULL: a table */
+	int n_blocks, n_pair_blocks;       /* blocks of pairs stand first, then blocks of singles */
+	int n_samples;                     /* samples in use, padding left out */
+	int32_t *q_i, *q_o;                /* n_blocks * KERNEL_BLOCK of each */
 	float *geometric_factor, *w;
 	uint16_t *row;
+	/* In place of q_i, q_o and row, where they are scattered: */
+	float *plane[KERNEL_PLANES]; /* one block of memory */
+	uint32_t *entry;             /* of *scattered */
+	struct sample_range range;
 	float *value;              /* unit w m; per block: channel by channel, first members, then second ones */
-	double unit;               /* a power of two: 1 but for a table so faint that floats would be denormal */
+	double unit;               /* a power of two: 1 but for data so faint that floats would be denormal */
 	double sum[MERL_CHANNELS]; /* sum of w m per channel */
 	double sum_w;              /* sum of w over the entries of one channel */
 	size_t n_entries;          /* entries of three channels */
 };
 
-/* sample_set_init - takes the valid entries out of `samples`. STATUS_NO_DATA when there is none or all are zero. */
+/* sample_set_init - takes the valid entries out of a measurement; scattered ones, in order of theta_h, are those within the
+ * criterion's max_theta, and *measurement has to outlive the table then. STATUS_NO_DATA when there is none or all are zero. */
 MUST_CHECK enum status sample_set_init(struct sample_set *table, const struct geometry *geometry,
 				       const struct measurement *measurement, int threads);
+/* sample_set_scattered - the part of sample_set_init() that does the scattered ones, less what is common to both. */
+MUST_CHECK enum status sample_set_scattered(struct sample_set *table, const struct geometry *geometry,
+					    const struct scattered *scattered);
+/* sample_set_alloc - room for a table of samples with unset members; STATUS_NO_MEMORY. */
+MUST_CHECK enum status sample_set_alloc(struct sample_set *table, const struct geometry *geometry,
+					const struct scattered *scattered, int n_pairs, int n_singles);
 /* sample_set_thin - a weighted sample of about n_samples samples whose sums estimate those of `full`.
  * Samples are selected systematically with probability p, three parts by what is measured there to one part evenly, and
  * weigh 1/p: a sample where the measurement is large, and so may be the error, is hardly ever missed. */
@@ -64,6 +83,16 @@ static inline struct kernel_samples sample_set_block(const struct sample_set *ta
 	return (struct kernel_samples){table->q_i + at, table->q_o + at, table->geometric_factor + at, table->row + at};
 }
 
+static inline struct kernel_scattered sample_set_scattered_block(const struct sample_set *table, int block)
+{
+	const size_t at = (size_t)block * KERNEL_BLOCK;
+	struct kernel_scattered samples = {.geometric_factor = table->geometric_factor + at};
+
+	for (int p = 0; p < KERNEL_PLANES; p++)
+		samples.plane[p] = table->plane[p] + at;
+	return samples;
+}
+
 /* sample_set_value - first members of channel c in a block. */
 static inline float *sample_set_value(const struct sample_set *table, int block, int c)
 {
@@ -75,6 +104,8 @@ static inline float *sample_set_value(const struct sample_set *table, int block,
 
 /* weight_at - w of entry (i, j, .) of a table, given its cosines; wants none of them for WEIGHT_NONE. */
 double weight_at(enum weight weight, int i, int j, double cos_i, double cos_o);
+/* weight_of_entry - the same of a scattered entry, whose solid angle it has itself. */
+double weight_of_entry(enum weight weight, double solid_angle, double cos_i, double cos_o);
 
 /* max_theta_cos - the smallest cosine that `max_theta` degrees allow; entry_in_range - whether an entry takes part. */
 double max_theta_cos(double max_theta);

@@ -49,13 +49,11 @@ enum status course_judge(struct course *course, const struct sample_set *full, c
 		status = objective_init(&objective, full, options, ready, 1, MASKING_COARSE);
 		for (size_t n = 0; n < course->trace.n && status == STATUS_OK; n++) {
 			struct fit_trace *p = &course->trace.point[n];
-			const struct shape shape = {p->sigma, p->gamma, p->ior, p->k};
+			const struct shape shape = {.sigma = p->sigma, .gamma = p->gamma, .ior = p->ior, .k = p->k};
 			if (fit_cancelled(options))
 				status = STATUS_INTERRUPTED;
-			else if (p->ndf == ready && is_thinned(p)) {
-				objective_jump(&objective, &shape);
+			else if (p->ndf == ready && is_thinned(p))
 				p->error = objective_eval(&objective, &shape, 1e-6, false, &linear);
-			}
 		}
 		objective_free(&objective);
 	}

@@ -325,6 +325,19 @@ bool result_failed(char *const *row)
 	return !strncmp(row[RESULT_STATUS], "failed", strlen("failed"));
 }
 
+enum result_column result_difference(char *const *a, char *const *b)
+{
+	enum result_column c = 0;
+	while (c < RESULT_COLUMNS && (c == RESULT_SECONDS || !strcmp(a[c], b[c])))
+		c++;
+	return c;
+}
+
+bool result_one_row_a_file(char *const *row)
+{
+	return strstr(row[RESULT_OPTIONS], "within=");
+}
+
 double result_number(char *const *row, enum result_column column)
 {
 	double x = NAN;

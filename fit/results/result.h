@@ -92,6 +92,12 @@ MUST_CHECK enum status result_add_failure(struct csv_table *table, const struct 
 					  const struct fit_options *options, const char *reason);
 bool result_failed(char *const *row);
 
+/* result_difference - the first column but seconds in which two rows differ; RESULT_COLUMNS when there is none. */
+enum result_column result_difference(char *const *a, char *const *b);
+/* result_one_row_a_file - whether a row was made with --within: then its file has one row, of whatever NDF was chosen, or,
+ * where the fit failed, a row for each NDF. */
+bool result_one_row_a_file(char *const *row);
+
 /* result_number - the value of a number column; NaN when empty. */
 double result_number(char *const *row, enum result_column column);
 

@@ -14,7 +14,8 @@ struct fit_context {
 
 enum status fit_context_new(struct fit_context **context, int n_phi_d, const struct fit_options *options)
 {
-	enum status status = n_phi_d == 180 || n_phi_d == 360 ? fit_criterion_check(options, NULL) : STATUS_DOMAIN;
+	const bool known = n_phi_d == 0 || n_phi_d == 180 || n_phi_d == 360;
+	enum status status = known ? fit_criterion_check(options, NULL) : STATUS_DOMAIN;
 	struct fit_context *c = status == STATUS_OK ? calloc(1, sizeof *c) : NULL;
 
 	if (status == STATUS_OK)
@@ -292,12 +293,12 @@ static enum status start_from_nested(const struct run *run, const struct ndf_cla
 	int count = 0;
 
 	for (int n = 0; n < NESTED; n++) {
-		const struct cook_torrance *m = &nested->result[n].model;
-
-		if (!isnan(nesting->gamma[n]))
-			given[count++] = (struct shape){m->ndf.sigma_x, nesting->gamma[n], m->n, m->k};
+		if (isnan(nesting->gamma[n]))
+			continue;
+		given[count] = shape_of(&nested->result[n].model);
+		given[count++].gamma = nesting->gamma[n];
 	}
-	const struct shape known = {r->model.ndf.sigma_x, r->model.ndf.gamma, r->model.n, r->model.k};
+	const struct shape known = shape_of(&r->model);
 
 	trace_further(&options, &further);
 	status = search_from(&run->multiresolution, &options, class, given, count, &known, r->error, &found);
@@ -504,7 +505,7 @@ static enum status find_undetermined(const struct run *run, const struct ndf_cla
 	const double begin = search_clock();
 	const struct cook_torrance *m = &r->model;
 	const unsigned settled = gamma_settled(run, class, nested, r);
-	const struct shape best = {m->ndf.sigma_x, m->ndf.gamma, m->n, m->k};
+	const struct shape best = shape_of(m);
 	struct fit_options options = *run->options;
 	enum status status = STATUS_OK;
 	unsigned found = 0;

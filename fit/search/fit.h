@@ -53,8 +53,8 @@ struct fit_result {
  * owns what it was made for: n_phi_d and the criterion. */
 struct fit_context;
 
-/* fit_context_new - precomputes what depends on n_phi_d and options->criterion only.
- * Errors: STATUS_DOMAIN (n_phi_d neither 180 nor 360, or fit_criterion_check() refuses the options), STATUS_NO_MEMORY. */
+/* fit_context_new - precomputes what depends on n_phi_d (0: scattered entries) and options->criterion only.
+ * Errors: STATUS_DOMAIN (n_phi_d neither 0, 180 nor 360, or fit_criterion_check() refuses the options), STATUS_NO_MEMORY. */
 MUST_CHECK enum status fit_context_new(struct fit_context **context, int n_phi_d, const struct fit_options *options);
 void fit_context_free(struct fit_context *context);
 

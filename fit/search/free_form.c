@@ -82,8 +82,31 @@ static enum status evaluate(struct run *r, struct state *s, double tolerance, bo
 	return STATUS_OK;
 }
 
+/* The row of a sample; where it is scattered, the node next to its theta_h. */
+static int row_of(const struct run *r, size_t n)
+{
+	const struct sample_set *t = r->sample;
+
+	if (!t->scattered)
+		return t->row[n] / MERL_THETA_D;
+	const struct halfdiff angles = {atan(hypot((double)t->plane[KERNEL_H_X][n], (double)t->plane[KERNEL_H_Y][n])),
+					0, 0};
+	const double i = bins_indices(r->options->criterion.bins, angles).i + 0.5;
+
+	return i < 0 ? 0 : (int)fmin(i, MERL_THETA_H - 1);
+}
+
+/* What a unit of D at the node of a sample's row adds to its lobe. Where the sample lies between nodes, as if D moved there in
+ * proportion to the node. */
+static float lobe_per_D(const struct run *r, const struct state *s, size_t n, int row)
+{
+	if (!r->sample->scattered)
+		return r->thin.s[n];
+	return s->D[row] > 0 ? r->thin.s[n] / (float)s->D[row] : 0;
+}
+
 /* Adds the values of D that sample n asks of its row to `wanted`. Returns how many it added. */
-static int sample_values(const struct run *r, const struct state *s, size_t n, struct weighted_value *wanted)
+static int sample_values(const struct run *r, const struct state *s, size_t n, int row, struct weighted_value *wanted)
 {
 	const struct sample_set *t = r->sample;
 	const int block = (int)(n / KERNEL_BLOCK), members = block < t->n_pair_blocks ? 2 : 1;
@@ -91,7 +114,7 @@ static int sample_values(const struct run *r, const struct state *s, size_t n, s
 
 	for (int c = 0; c < MERL_CHANNELS; c++) {
 		const float *value = sample_set_value(t, block, c) + n % KERNEL_BLOCK;
-		const float per_D = (float)(s->linear.ks[c] * t->unit) * r->thin.s[n],
+		const float per_D = (float)(s->linear.ks[c] * t->unit) * lobe_per_D(r, s, n, row),
 			    below = (float)(s->linear.kd[c] / M_PI * t->unit) * t->w[n];
 
 		for (int a = 0; a < members && per_D > 0; a++)
@@ -111,6 +134,7 @@ static enum status propose(struct run *r, const struct state *s, double D[MERL_T
 
 	if (status != STATUS_OK)
 		return status;
+	/* At scattered entries the lobe is that of D as it is; at those of a table, that of D = 1. */
 	for (int i = 0; i < MERL_THETA_H; i++)
 		unit[i] = 1;
 	memcpy(r->thin.D, unit, sizeof unit);
@@ -118,15 +142,15 @@ static enum status propose(struct run *r, const struct state *s, double D[MERL_T
 	if (status != STATUS_OK)
 		return status;
 	for (size_t n = 0; n < samples; n++)
-		begin[t->row[n] / MERL_THETA_D + 1] += 2 * MERL_CHANNELS;
+		begin[row_of(r, n) + 1] += 2 * MERL_CHANNELS;
 	for (int i = 0; i < MERL_THETA_H; i++) {
 		begin[i + 1] += begin[i];
 		end[i] = begin[i];
 	}
 	for (size_t n = 0; n < samples; n++) {
-		const int i = t->row[n] / MERL_THETA_D;
+		const int i = row_of(r, n);
 
-		end[i] += (size_t)sample_values(r, s, n, r->values + end[i]);
+		end[i] += (size_t)sample_values(r, s, n, i, r->values + end[i]);
 	}
 #pragma omp parallel for num_threads(r->options->threads) schedule(dynamic) if (r->options->threads > 1)
 	for (int i = 0; i < MERL_THETA_H; i++)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* free_form - a piecewise-linear NDF fitted to the table itself: what any isotropic NDF could reach with this G and F.
+/* free_form - a piecewise-linear NDF fitted to the measurement itself: what any isotropic NDF could reach with this G and F.
  *
- * Nodes stand at the table's theta_h. One more value stands for the facets that are all but vertical, of which the table
+ * Nodes stand at the theta_h of a table; each scattered entry counts for the node next to it. One more value stands for the facets that are all but vertical, of which the table
  * shows nothing but their shadow: they add a tan(theta) to Lambda, a free factor. Heavy tails need it: most of the
  * Lambda of STD near gamma = 1.5 comes from slopes beyond any table. Convex steps take turns, from the optimum of a parametric NDF: (kd, ks); the node
  * values, each the weighted median of its row; the index of refraction; and the normalisation and G that follow from

@@ -233,14 +233,19 @@ static int thin_out(const struct search *s, struct space_point *point, int count
 	return kept;
 }
 
+/* Up to so many scattered entries, the end of a search is without tables: it costs no more than the rest. */
+enum { EXACT_SAMPLES = 4096 };
+
 /* Refines the points on one level's table one after the other; the calling thread leads, the others of its team help
  * with the passes. */
 static enum status refine_in_turn(struct search *s, int level, struct space_point *point, int count,
 				  struct found *found)
 {
+	const struct sample_set *table = &s->multiresolution->table[level];
+	const bool few = level == SEARCH_LEVELS - 1 && table->scattered && table->n_samples <= EXACT_SAMPLES;
 	struct objective o;
-	enum status status = objective_init(&o, &s->multiresolution->table[level], s->options, s->class,
-					    s->options->threads, MASKING_COARSE);
+	enum status status = objective_init(&o, table, s->options, s->class, s->options->threads,
+					    few ? MASKING_FINE : MASKING_COARSE);
 
 	if (status != STATUS_OK)
 		return status;

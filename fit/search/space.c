@@ -73,10 +73,10 @@ static void add_dim(struct space *s, enum coordinate c, double lowest, double hi
 
 void space_init(struct space *s, const struct fit_options *o, const struct ndf_class *class)
 {
-	*s = (struct space){.fixed = {o->sigma, o->gamma, o->ior, 0}};
+	*s = (struct space){.fixed = {.sigma = o->sigma, .gamma = o->gamma, .ior = o->ior}};
 	if (!o->specular) {
 		/* Any valid shape will do: ks is 0. */
-		s->fixed = (struct shape){1, 2, 1.5, 0};
+		s->fixed = (struct shape){.sigma = 1, .gamma = 2, .ior = 1.5};
 		return;
 	}
 	if (isnan(o->sigma))

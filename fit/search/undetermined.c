@@ -419,7 +419,7 @@ static enum status find_of_table(struct refit_context *q, unsigned *undetermined
 	bool any = false;
 
 	q->class = ndf_find("ggx");
-	q->best = (struct shape){1, 2, 1.5, 0};
+	q->best = (struct shape){.sigma = 1, .gamma = 2, .ior = 1.5};
 	const enum status status = can_do_without_lobe(q, &any);
 
 	*undetermined = any && free_ior ? BOUND_IOR : 0;

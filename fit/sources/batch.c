@@ -15,7 +15,7 @@
 
 enum {
 	TICK_MS = 150, /* how often the progress line is drawn and Ctrl-C checked for, while nothing else happens */
-	CONTEXTS = 2,  /* 180 and 360 entries along phi_d */
+	CONTEXTS = 3,  /* scattered entries, 180 and 360 along phi_d */
 	CONTEXT_PHI = 180,
 };
 
@@ -70,7 +70,7 @@ struct result_source batch_source(const struct batch *batch, const struct batch_
 /* The context for this kind of table, made by the first thread that needs it. */
 static enum status get_context(struct run *run, int n_phi_d, const struct fit_context **context)
 {
-	struct fit_context **shared = &run->context[n_phi_d != CONTEXT_PHI];
+	struct fit_context **shared = &run->context[n_phi_d / CONTEXT_PHI];
 	enum status status = STATUS_OK;
 	pthread_mutex_lock(&run->lock);
 	if (!*shared)
@@ -98,10 +98,7 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 	const struct result_source source = batch_source(run->batch, file);
 	const struct fit_context *context;
 	struct fit_result result[FIT_NDFS_MAX];
-	enum status status = measurement_require_table(measurement, "the fit", &file->error);
-	if (status != STATUS_OK)
-		return status;
-	status = get_context(run, measurement->n_phi_d, &context);
+	enum status status = get_context(run, measurement->n_phi_d, &context);
 	if (status != STATUS_OK)
 		return error_set(&file->error, status, "%s", status_str(status));
 	if (!isnan(options->within))

@@ -6,6 +6,7 @@
 #include "fit/cli/files.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/output_directory.h"
+#include "fit/results/contradiction.h"
 #include "fit/results/store.h"
 #include "fit/sources/batch.h"
 
@@ -143,6 +144,23 @@ static enum status group_rows(struct materials *materials)
 
 /* Where rows come from */
 
+/* Whether none of these files is one that is written into DIR itself. Returns -1, or the exit code to end with; what is
+ * wrong is then reported. */
+static int check_directory(const struct options *options, char *const *path, size_t n)
+{
+	static const char *const written[] = {"fits.csv", "errors.csv", "index.html"};
+	struct error error;
+	enum status status = STATUS_OK;
+	for (size_t i = 0; i < sizeof written / sizeof *written && status == STATUS_OK; i++)
+		status = output_directory_spares(options->output, written[i], path, (int)n, &error);
+	if (status == STATUS_DOMAIN)
+		return options_usage(options->command, "%s", error.text);
+	if (status == STATUS_OK)
+		return -1;
+	report_error("%s", error.text);
+	return EXIT_FAILED;
+}
+
 static int read_rows(struct csv_table *rows, const struct options *options)
 {
 	static const char *const useful[] = {"output",   "quiet", "threads", "environment", "light",
@@ -154,14 +172,21 @@ static int read_rows(struct csv_table *rows, const struct options *options)
 	if (options->n_paths > 1)
 		return options_usage(options->command, "expected one table and nothing beside it, found %d paths",
 				     options->n_paths);
-	if (csv_table_read(rows, options->path[0], RESULT_STATUS + 1, NULL, &error) == STATUS_OK) {
-		if (rows->n_rows)
-			return EXIT_DONE;
+	if (csv_table_read(rows, options->path[0], RESULT_STATUS + 1, NULL, &error) == STATUS_OK &&
+	    contradiction_check(rows, options->path[0], &error) == STATUS_OK) {
+		int wrong = -1;
+		for (size_t i = 0; i < rows->n_rows && wrong < 0; i++)
+			wrong = check_directory(options, &rows->row[i][RESULT_PATH], 1);
+		if (wrong >= 0)
+			csv_table_free(rows); /* nothing is shown */
+		if (wrong >= 0 || rows->n_rows)
+			return wrong < 0 ? EXIT_DONE : wrong;
 		char name[TEXT_QUOTE_SIZE];
 		text_quote(options->path[0], name, sizeof name);
 		error_set(&error, STATUS_NO_DATA, "'%s' has no rows to show", name);
 	}
 	report_error("%s", error.text);
+	csv_table_free(rows);
 	return EXIT_FAILED;
 }
 
@@ -172,16 +197,15 @@ static int fit_rows(struct csv_table *rows, const struct options *options)
 	const int bad = files_collect(&files, options->path, options->n_paths, options->recursive, options->cancel);
 	if (bad < 0)
 		return EXIT_FAILED;
+	int wrong = check_directory(options, files.path, files.n);
 	struct error error;
-	enum status status = output_directory_spares(options->output, "fits.csv", files.path, (int)files.n, &error);
-	if (status == STATUS_OK)
-		status = output_directory_accepts(options->output, "fits.csv", &error);
-	if (status != STATUS_OK) {
-		files_free(&files);
-		if (status == STATUS_DOMAIN)
-			return options_usage(options->command, "%s", error.text);
+	if (wrong < 0 && output_directory_accepts(options->output, "fits.csv", &error) != STATUS_OK) {
 		report_error("%s", error.text);
-		return EXIT_FAILED;
+		wrong = EXIT_FAILED;
+	}
+	if (wrong >= 0) {
+		files_free(&files);
+		return wrong;
 	}
 	if (batch_init(&batch, options, &files) != STATUS_OK) {
 		files_free(&files);

@@ -219,9 +219,7 @@ static enum status fit_file(const struct options *options, const char *path, con
 	enum status status = measurement_read(path, &reading, &source->measurement, error);
 	if (status != STATUS_OK)
 		return status;
-	status = measurement_require_table(&source->measurement, "the fit", &why);
-	if (status == STATUS_OK)
-		status = fit_context_new(&context, source->measurement.n_phi_d, &options->fit);
+	status = fit_context_new(&context, source->measurement.n_phi_d, &options->fit);
 	if (status != STATUS_OK && !why.text[0])
 		error_set(&why, status, "%s", status_str(status));
 	if (status == STATUS_OK)
