@@ -17,13 +17,14 @@
 #include <unistd.h>
 
 static const struct command_text commands[COMMAND_COUNT] = {
-	[COMMAND_FIT] = {"fit", "PATH...", "fit MERL files",
-			 "Fits a Cook-Torrance model with each NDF to each MERL file. A directory stands for\n"
-			 "every *.binary in it. A terminal shows a readable table, a pipe gets CSV. With -o, rows\n"
+	[COMMAND_FIT] = {"fit", "PATH...", "fit measurements",
+			 "Fits a Cook-Torrance model with each NDF to each measurement. A directory stands for\n"
+			 "every file of a known format in it. A terminal shows a readable table, a pipe gets CSV. With "
+			 "-o, rows\n"
 			 "are appended as files are done and put in order at the end, so that Ctrl-C or a kill\n"
 			 "loses nothing that was done; --resume goes on from there.\n"},
 	[COMMAND_COMPARE] = {"compare", "PATH...", "errors of the NDFs side by side, per material and in all",
-			     "Fits MERL files or directories, or takes one result table (FILE.csv) as it is. Shows\n"
+			     "Fits measurements or directories, or takes one result table (FILE.csv) as it is. Shows\n"
 			     "the error of each NDF, the winner, by how much STD's error is lower than GGX's and\n"
 			     "Beckmann's (in % of theirs), then mean, median, worst and wins.\n"},
 	[COMMAND_MERGE] = {"merge", "CSV... [PATH...]", "join the tables of a batch's shares (fit --shard) into one",
@@ -35,7 +36,7 @@ static const struct command_text commands[COMMAND_COUNT] = {
 			   "may stand in several tables; the seconds are those of the first. Failed rows stay.\n"},
 	[COMMAND_BENCH] =
 		{"bench", "FILE", "error against run time, the default search beside others",
-		 "Fits one NDF to one MERL file, read already, with one algorithm after the other, each alone\n"
+		 "Fits one NDF to one measurement, read already, with one algorithm after the other, each alone\n"
 		 "on all threads, and shows the error that each had reached after 0.1, 0.3, 1, 3 and 10 s, at\n"
 		 "the end of --time, and the shapes it had evaluated. Every error is that of the full table:\n"
 		 "shapes that the default search judged by a sample of the table are judged anew afterwards.\n"
@@ -45,10 +46,10 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "parameters with the exact Lambda, and what the search took. integer and half-integer fit\n"
 		 "every gamma they have; where a form does not take a fixed --gamma, its row is empty.\n"},
 	[COMMAND_EVAL] = {"eval", "FILE", "error of given parameters, no fit",
-			  "Measures how far a model is from a MERL file, under every weight and metric. The model\n"
+			  "Measures how far a model is from a measurement, under every weight and metric. The model\n"
 			  "comes from options, or from rows of a result table (--from), which also bring their\n"
 			  "G, Fresnel term, bins and largest theta.\n"},
-	[COMMAND_INFO] = {"info", "FILE...", "what is in a MERL file: validity, ranges, suspects",
+	[COMMAND_INFO] = {"info", "FILE...", "what is in a measurement: format, validity, ranges, suspects",
 			  "Shows size, hash, valid, negative and non-finite entries, the range of the valid values\n"
 			  "above the horizon per channel (1/sr), the directional albedo of the data at 0, 30 and 60\n"
 			  "degrees with the share of the hemisphere that is measured, and what looks wrong.\n"},
@@ -88,14 +89,14 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "values, delta_e the mean CIEDE2000, ssim the structural similarity.\n"},
 	[COMMAND_PLOT] =
 		{"plot", "PATH...", "fits, or the course of searches, as plots by gnuplot",
-		 "Takes a result table (FILE.csv), or fits MERL files or directories. Writes into the directory\n"
+		 "Takes a result table (FILE.csv), or fits measurements or directories. Writes into the directory\n"
 		 "of -o the errors of all materials, sorted; and per material D and G1 of each fit against the\n"
 		 "NDF read off the data, slices, measured against fitted, and the error over theta_h and\n"
 		 "theta_d: each as PNG, SVG, CSV and the script that draws it. Of a trace (see fit --trace) it\n"
 		 "draws the error against time.\n"},
 	[COMMAND_REPORT] =
 		{"report", "PATH...", "fits as one HTML page that needs no other file",
-		 "Takes a result table (FILE.csv), or fits MERL files or directories. Writes index.html into the\n"
+		 "Takes a result table (FILE.csv), or fits measurements or directories. Writes index.html into the\n"
 		 "directory of -o: a summary, a table that can be sorted, and per material its spheres (see\n"
 		 "stdfit render), plots (see stdfit plot), parameters, their certainty, options and versions.\n"},
 };
