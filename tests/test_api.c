@@ -169,7 +169,7 @@ static void null_and_nonsense_are_refused(void **state)
 	expect(stdfit_measurement_from_values(&measurement, 90, up, &error), STDFIT_DOMAIN, "found 90");
 	expect(stdfit_measurement_values(NULL, value, &error), STDFIT_DOMAIN, "NULL");
 	expect(stdfit_context_new(&context, 180, NULL, &error), STDFIT_DOMAIN, "options is NULL");
-	expect(stdfit_context_new(&context, 0, &options, &error), STDFIT_DOMAIN, "found 0");
+	expect(stdfit_context_new(&context, 90, &options, &error), STDFIT_DOMAIN, "found 90");
 	expect(stdfit_fit(NULL, NULL, &options, 1, NULL, &error), STDFIT_DOMAIN, "context is NULL");
 	expect(stdfit_estimate(NULL, NULL, &options, value, &error), STDFIT_DOMAIN, "context is NULL");
 	expect(stdfit_compare(NULL, &model, ndf, &options, &metrics, &error), STDFIT_DOMAIN, "measurement");

@@ -806,6 +806,58 @@ static void small_stacks_are_made_larger_or_told(void **state)
 	expect_error(2, "bad value '99999' for --threads: expected a whole number from 1 to 1024");
 }
 
+/* Cells of a table that would colour the terminal, ring its bell or turn the order of letters round. */
+#define EVIL                                                                                                           \
+	"\x1b[31m\xe2\x80\xae"                                                                                         \
+	"evil\xe2\x81\xa6\x07\xc2\x9b"
+
+static void expect_tame(const char *text, int line)
+{
+	static const char *const evil[] = {"\x1b", "\xe2\x80\xae", "\xe2\x81\xa6", "\x07", "\xc2\x9b"};
+	for (size_t e = 0; e < sizeof evil / sizeof *evil; e++)
+		if (strstr(text, evil[e]))
+			fail_msg("line %d: control characters in: %s", line, text);
+}
+
+static void cells_leave_the_terminal_alone(void **state)
+{
+	static const enum result_column evil[] = {RESULT_MATERIAL, RESULT_NDF,     RESULT_AT_BOUND, RESULT_STATUS,
+						  RESULT_PATH,     RESULT_VERSION, RESULT_OPTIONS};
+	(void)state;
+	stdfit("a.binary --ndf ggx --no-specular -q -o tame.csv");
+	expect_code(0);
+	for (size_t e = 0; e < sizeof evil / sizeof *evil; e++) {
+		struct csv_table table = read_table("tame.csv");
+		char *cells[RESULT_COLUMNS];
+		memcpy(cells, table.row[0], sizeof cells);
+		cells[evil[e]] = EVIL;
+		FILE *file = fopen("evil.csv", "w");
+		assert_non_null(file);
+		csv_write_header(file, result_columns, RESULT_COLUMNS);
+		csv_write_row(file, cells, RESULT_COLUMNS);
+		assert_int_equal(fclose(file), 0);
+		csv_table_free(&table);
+		static const char *const commands[] = {"merge evil.csv --table",
+						       "compare evil.csv --table",
+						       "merge evil.csv tame.csv --table",
+						       "compare evil.csv --json",
+						       "report evil.csv -o evil --size 8 --samples 1 -q",
+						       "eval a.binary --from evil.csv --row 1 --table"};
+		for (size_t c = 0; c < sizeof commands / sizeof *commands; c++) {
+			stdfit(commands[c]);
+			expect_tame(last.out, __LINE__);
+			expect_tame(last.err, __LINE__);
+		}
+		char *page = slurp("evil/index.html");
+		expect_tame(page, __LINE__);
+		free(page);
+	}
+	/* JSON keeps them, escaped. */
+	shell("sed \"s/^a,/$(printf 'a\\033\\342\\200\\256'),/\" tame.csv >evil.csv; exec \"$STDFIT\" merge evil.csv "
+	      "--json");
+	expect_out("\"material\": \"a\\u001b\\u202e\"");
+}
+
 static void noise_follows_the_seed(void **state)
 {
 	(void)state;
@@ -847,6 +899,7 @@ int main(void)
 		cmocka_unit_test(within_takes_the_simplest),
 		cmocka_unit_test(faults_of_the_data_are_told),
 		cmocka_unit_test(small_stacks_are_made_larger_or_told),
+		cmocka_unit_test(cells_leave_the_terminal_alone),
 		cmocka_unit_test(noise_follows_the_seed),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);

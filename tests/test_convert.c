@@ -235,7 +235,7 @@ static void wrong_usage_is_refused(void **state)
 	stdfit("convert gray.dat a.txt");
 	expect_error(2, "expected OUT.csv or OUT.binary");
 	stdfit("convert paint.csv ./paint.csv");
-	expect_error(2, "OUT names the file that is to be read");
+	expect_error(2, "OUT names a file that is to be read");
 	stdfit("convert gray.dat a.csv --phi 360");
 	expect_error(2, "--phi means nothing for a CSV");
 	stdfit("convert none.dat a.csv");

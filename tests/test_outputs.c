@@ -348,6 +348,12 @@ static void inputs_are_no_outputs(void **state)
 		stdfit(refused[r]);
 		expect_error(2, "--output names a file that is to be read");
 	}
+	stdfit("convert in.binary directory/../in.pfm");
+	expect_error(2, "OUT names a file that is to be read");
+	shell("\"$STDFIT\" convert a.binary samples.csv -q && \"$STDFIT\" convert a.binary - -q | cmp - samples.csv && "
+	      "rm "
+	      "samples.csv");
+	expect_code(0);
 	shell("exec \"$STDFIT\" merge in.csv b.csv -o - >>in.csv");
 	expect_error(2, "--output names a file that is to be read");
 	/* The backup of an output. */

@@ -4,7 +4,7 @@
 #include "fit/error/model_table.h"
 #include "fit/error/suspects.h"
 #include "fit/search/fit.h"
-#include "make_table.h"
+#include "make_scattered.h"
 
 static const double degree = M_PI / 180;
 
@@ -227,6 +227,42 @@ static void zeros_can_be_left_out(void **state)
 	measurement_free(&masked);
 }
 
+/* Of scattered entries too, in the fit and in the metrics. Nothing else is looked for in them yet. */
+static void zeros_among_scattered_entries_can_be_left_out(void **state)
+{
+	const struct cook_torrance model = make_model("ggx", 0.3, 2, 1.5);
+	struct measurement scattered = make_scattered(&model, 900, 0, 7);
+	struct fit_options options = fit_options_default();
+	struct fit_context *context;
+	struct fit_result result;
+	struct fit_metrics metrics;
+	struct error error;
+
+	(void)state;
+	for (size_t n = 0; n < 300; n++)
+		for (int c = 0; c < MERL_CHANNELS; c++)
+			scattered.scattered->value[c][3 * n] = 0;
+	options.n_ndf = 1;
+	options.specular = false;
+	for (int missing = 0; missing < 2; missing++) {
+		const size_t entries = MERL_CHANNELS * (missing ? 600 : 900);
+
+		options.criterion.zero_is_missing = missing;
+		assert_int_equal(fit_context_new(&context, 0, &options), STATUS_OK);
+		assert_int_equal(fit_run(context, &scattered, &options, &result, &error), STATUS_OK);
+		fit_context_free(context);
+		assert_int_equal(result.metrics.samples, entries);
+		assert_int_equal(fit_eval(&scattered, &model, &options, &metrics, &error), STATUS_OK);
+		assert_int_equal(metrics.samples, entries);
+		assert_true(missing ? metrics.error[0] < 1e-6 : metrics.error[0] > 0.1);
+	}
+	const struct suspects s = look_at(&scattered, node);
+
+	check_words(&s, "", "scattered entries");
+	assert_true(isnan(s.albedo[0][0]) && isnan(s.measured[0]) && isnan(s.ends_at));
+	measurement_free(&scattered);
+}
+
 static void times_1500(float *value[MERL_CHANNELS], int i, int j, int k, double cos_i, double cos_o)
 {
 	(void)i, (void)j, (void)k, (void)cos_i, (void)cos_o;
@@ -368,6 +404,7 @@ int main(void)
 		cmocka_unit_test(albedo_is_the_integral_of_the_data),
 		cmocka_unit_test(holes_are_found),
 		cmocka_unit_test(zeros_can_be_left_out),
+		cmocka_unit_test(zeros_among_scattered_entries_can_be_left_out),
 		cmocka_unit_test(other_units_are_found),
 		cmocka_unit_test(cosines_and_asymmetry_are_found),
 		cmocka_unit_test(alternating_channels_are_found),

@@ -98,7 +98,8 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		{"report", "PATH...", "fits as one HTML page that needs no other file",
 		 "Takes a result table (FILE.csv), or fits measurements or directories. Writes index.html into the\n"
 		 "directory of -o: a summary, a table that can be sorted, and per material its spheres (see\n"
-		 "stdfit render), plots (see stdfit plot), parameters, their certainty, options and versions.\n"},
+		 "stdfit render), plots (see stdfit plot), parameters, their certainty, options and versions.\n"
+		 "Of more than 150 materials each has a page of its own, in materials/ beside index.html.\n"},
 };
 
 const struct command_text *options_command(enum command command)

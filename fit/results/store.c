@@ -120,7 +120,6 @@ enum status store_check_columns(const char *path, struct error *error)
 static enum status sort_old(struct store *store)
 {
 	struct contradiction found, again;
-	char name[TEXT_QUOTE_SIZE];
 	store->stale = calloc(store->old.n_rows + 1, sizeof(*store->stale));
 	store->doubtful = calloc(store->old.n_rows + 1, sizeof(*store->doubtful));
 	if (!store->stale || !store->doubtful)
@@ -132,6 +131,7 @@ static enum status sort_old(struct store *store)
 	if (status == STATUS_OK)
 		status = contradiction_find(&store->old, SAME_RUN, &again, store->doubtful, store->stale);
 	if (status == STATUS_OK && found.first) {
+		char name[TEXT_QUOTE_SIZE];
 		text_quote(store->path, name, sizeof name);
 		error_set(&store->doubt, STATUS_FORMAT,
 			  "'%s' rows %zu and %zu, of the same fit, differ in %s: such fits are made again", name,
