@@ -47,8 +47,8 @@ struct tally {
 	double min_cos;
 	bool zero_is_missing;
 	size_t n, n_zero, n_masked, n_spikes;
-	double lag_1, lag_3, green; /* sums of differences along phi_d, and of values */
-	float max[MERL_CHANNELS];
+	double lag_1, lag_3, green;          /* sums of differences along phi_d, and of values */
+	int32_t max[MERL_CHANNELS];          /* order_of() the largest value */
 	int n_rows, max_rows[MERL_CHANNELS]; /* rows of half a turn; those that have the largest value */
 	double all[CLASSES], zero[CLASSES], masked[CLASSES]; /* by the larger of theta_i and theta_o */
 	float sampled[SAMPLED];                              /* sums over the channels, not 0 */
@@ -81,25 +81,39 @@ static struct half_row half_row_at(const struct tally *t, int i, int j, int star
 	return row;
 }
 
+/* Floats that are not negative are in the order of their bits, as whole numbers; NaN counts as 0. The largest of whole
+ * numbers is found with vectors by any compiler. */
+static int32_t order_of(float value)
+{
+	int32_t bits;
+
+	memcpy(&bits, &value, sizeof bits);
+	return isnan(value) ? 0 : bits;
+}
+
 static void count_values(struct tally *t, const struct half_row *row)
 {
 	const float *restrict r = row->value[0], *restrict g = row->value[1], *restrict b = row->value[2];
 	int zero = 0, masked = 0;
-	float max_r = 0, max_g = 0, max_b = 0;
+	int32_t max[MERL_CHANNELS], max_r = 0, max_g = 0, max_b = 0;
 
 #pragma omp simd reduction(+ : zero, masked) reduction(max : max_r, max_g, max_b)
 	for (int k = row->first; k <= row->last; k++) {
 		zero += r[k] + g[k] + b[k] == 0;
 		masked += isnan(r[k]);
-		max_r = r[k] > max_r ? r[k] : max_r;
-		max_g = g[k] > max_g ? g[k] : max_g;
-		max_b = b[k] > max_b ? b[k] : max_b;
+		const int32_t order_r = order_of(r[k]), order_g = order_of(g[k]), order_b = order_of(b[k]);
+
+		max_r = order_r > max_r ? order_r : max_r;
+		max_g = order_g > max_g ? order_g : max_g;
+		max_b = order_b > max_b ? order_b : max_b;
 	}
 	t->n += (size_t)(row->last - row->first + 1);
 	t->n_zero += (size_t)zero;
 	t->n_masked += (size_t)masked;
 	t->n_rows++;
-	const float max[MERL_CHANNELS] = {max_r, max_g, max_b};
+	max[0] = max_r;
+	max[1] = max_g;
+	max[2] = max_b;
 	for (int c = 0; c < MERL_CHANNELS; c++) {
 		if (max[c] > t->max[c]) {
 			t->max[c] = max[c];
