@@ -226,11 +226,13 @@ static struct value value_at(const struct tree *tree, const struct scattered *s,
 	struct value v = {.weight = 0};
 	struct query nearest = {.x = x, .side = -1, .max = AT_POINT, .bound = INFINITY};
 	search(&nearest, tree->place, tree->n);
+	if (nearest.n == 0) /* there is at least one */
+		return v;
 	const double reach = (double)nearest.found[0]->reach, at_point = NEAR * NEAR;
 	const double bound = LOOK * LOOK * fmax(reach * reach, nearest.distance[0]);
 	v.inside = nearest.distance[0] <= reach * reach;
 	if (nearest.distance[0] <= at_point) {
-		while (nearest.distance[nearest.n - 1] > at_point)
+		while (nearest.n > 1 && nearest.distance[nearest.n - 1] > at_point)
 			nearest.n--;
 		take(&v, s, &nearest);
 		return v;

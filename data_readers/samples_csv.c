@@ -174,23 +174,23 @@ static enum status check_layout(const struct layout *layout, struct error *why)
 
 static char separator_of(const char *line)
 {
-	return strchr(line, ',') ? ',' : strchr(line, ';') ? ';' : ' ';
+	if (strchr(line, ','))
+		return ',';
+	return strchr(line, ';') ? ';' : ' ';
 }
 
 /* Cuts the next name off, without blanks and quotes around it. */
 static char *next_name(char **text, char separator)
 {
 	char *name = line_skip_space(*text);
-	char *end = separator == ' ' ? name + strcspn(name, " \t") : name + strcspn(name, (char[]){separator, '\0'});
-	*text = *end ? end + 1 : end;
-	while (end > name && (end[-1] == ' ' || end[-1] == '\t'))
-		end--;
-	if (end - name >= 2 && *name == '"' && end[-1] == '"') {
-		name++;
-		end--;
-	}
-	*end = '\0';
-	return name;
+	const char stops[] = {separator, separator == ' ' ? '\t' : '\0', '\0'};
+	size_t length = strcspn(name, stops);
+	*text = name + length + (name[length] != '\0');
+	while (length > 0 && (name[length - 1] == ' ' || name[length - 1] == '\t'))
+		length--;
+	const bool quoted = length >= 2 && name[0] == '"' && name[length - 1] == '"';
+	name[length - quoted] = '\0';
+	return name + quoted;
 }
 
 /* Understands the line of names, which it takes apart. */
