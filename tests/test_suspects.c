@@ -17,7 +17,7 @@ static struct measurement noisy_table(const struct cook_torrance *model, int n_p
 	struct measurement table;
 	unsigned seed = 1;
 
-	assert_int_equal(model_table(model, bins, n_phi_d, 90, 2, &table), STATUS_OK);
+	assert_int_equal(model_table(model, bins, n_phi_d, 90, 1, &table), STATUS_OK);
 	for (size_t at = 0; at < measurement_count(&table) && noise > 0; at++)
 		for (int c = 0; c < MERL_CHANNELS; c++)
 			table.value[c][at] *= (float)(1 + noise * (2 * random_unit(&seed) - 1));
@@ -29,9 +29,11 @@ static int make_tables(void **state)
 	struct cook_torrance model = make_model("ggx", 0.1, 2, 1.5);
 
 	(void)state;
+	model.fresnel = FRESNEL_NONE; /* quicker */
+	model.ks[0] = model.ks[1] = model.ks[2] = 0.05;
 	plastic = noisy_table(&model, 180, BINS_NODE, 0.1);
 	memset(model.kd, 0, sizeof model.kd);
-	model.n = 20;
+	model.ks[0] = model.ks[1] = model.ks[2] = 0.6;
 	metal = noisy_table(&model, 180, BINS_NODE, 0.1);
 	return 0;
 }
@@ -59,20 +61,22 @@ typedef void fault(float *value[MERL_CHANNELS], int i, int j, int k, double cos_
 static void damage(struct measurement *measurement, fault *do_it)
 {
 	const struct entries entries = entries_make(BINS_NODE, measurement->n_phi_d);
+	size_t at = 0;
 
 	for (int i = 0; i < MERL_THETA_H; i++)
-		for (int j = 0; j < MERL_THETA_D; j++)
-			for (int k = 0; k < measurement->n_phi_d; k++) {
-				const size_t at = measurement_at(measurement->n_phi_d, i, j, k);
-				float *value[MERL_CHANNELS];
-				struct vec3 wi, wo;
+		for (int j = 0; j < MERL_THETA_D; j++) {
+			const struct halfdiff_trig *h = &entries.theta[i], *d = &entries.theta[j];
 
-				for (int c = 0; c < MERL_CHANNELS; c++)
-					value[c] = &measurement->value[c][at];
-				entries_dirs(&entries, i, j, k, &wi, &wo);
+			for (int k = 0; k < measurement->n_phi_d; k++, at++) {
+				const double level = h->cos_h * d->cos_d;
+				const double swing = h->sin_h * d->sin_d * entries.phi[k].cos_phi;
+				float *value[MERL_CHANNELS] = {&measurement->value[0][at], &measurement->value[1][at],
+							       &measurement->value[2][at]};
+
 				if (!isnan(*value[0]))
-					do_it(value, i, j, k, wi.z, wo.z);
+					do_it(value, i, j, k, level - swing, level + swing);
 			}
+		}
 }
 
 static struct suspects look_at(const struct measurement *measurement, struct criterion criterion)
@@ -210,6 +214,7 @@ static void zeros_can_be_left_out(void **state)
 	check_words(&s, "", "zero_is_missing");
 	check_between(s.measured[0], 0.9, 0.98, "zeros count as missing");
 	options.n_ndf = 1;
+	options.threads = 1;
 	options.specular = false; /* that is quick */
 	for (int run = 0; run < 2; run++) {
 		options.criterion.zero_is_missing = run == 0;
@@ -334,8 +339,6 @@ static void cosines_and_asymmetry_are_found(void **state)
 	assert_int_equal(check_fault(&plastic, times_cos_o, "cosine", "times cos theta_o").cosine, 2);
 	assert_int_equal(check_fault(&plastic, times_both, "cosine", "times both").cosine, 3);
 	check_between(check_fault(&plastic, lopsided, "asymmetric", "lopsided").asymmetry, 0.2, 0.25, "asymmetry");
-	if (case_step(2) > 1)
-		return;
 	/* With a whole turn the exchange itself is measured. */
 	const struct cook_torrance model = make_model("ggx", 0.1, 2, 1.5);
 	struct measurement whole = noisy_table(&model, 360, BINS_NODE, 0.1);
