@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/cli/option_value.h"
 #include "data_readers/text_quote.h"
+#include "fit/cli/nearest.h"
 #include "fit/results/csv.h"
 
 #include <ctype.h>
@@ -53,7 +54,7 @@ const struct option_spec option_specs[] = {
 	{"shard", 0, KIND_SHARD, FIT, NOT_RECORDED, "I/N",
 	 "fit only share I of N of the files: of their sorted list every N-th, beginning with the I-th", AT(shard), 1,
 	 100000},
-	{"recursive", 'r', KIND_ON, FITS | MERGE | RENDER, NOT_RECORDED, NULL,
+	{"recursive", 'r', KIND_ON, FITS | MERGE | RENDER | INFO, NOT_RECORDED, NULL,
 	 "directories: take the files below them too", AT(recursive), 0, 0},
 	{"quiet", 'q', KIND_ON, SEARCHES | RENDER, NOT_RECORDED, NULL, "no progress line, no summary", AT(quiet), 0, 0},
 	{"quiet", 'q', KIND_ON, EXPORT | CONVERT, NOT_RECORDED, NULL, "no words but errors", AT(quiet), 0, 0},
@@ -365,6 +366,16 @@ static enum status expected_choice(enum option_kind kind, struct error *error)
 	return error_set(error, STATUS_DOMAIN, "expected one of %s", names);
 }
 
+static enum status unknown_ndf(const char *name, struct error *error)
+{
+	struct error choice;
+	const int near = nearest_word(name, distribution_name_at, NULL);
+	const enum status status = expected_choice(KIND_NDFS, &choice);
+	if (near < 0)
+		return error_set(error, status, "%s", choice.text);
+	return error_set(error, status, "%s; did you mean %s?", choice.text, distribution_name_at(NULL, near));
+}
+
 static enum status parse_ndfs(const char *text, struct fit_options *fit, struct error *error)
 {
 	char name[64], shown[TEXT_QUOTE_SIZE];
@@ -373,7 +384,7 @@ static enum status parse_ndfs(const char *text, struct fit_options *fit, struct 
 		rest = next_item(rest, name, sizeof name);
 		const struct ndf_class *ndf = ndf_find(name);
 		if (!ndf)
-			return expected_choice(KIND_NDFS, error);
+			return unknown_ndf(name, error);
 		text_quote(name, shown, sizeof shown);
 		for (int i = 0; i < n; i++)
 			if (fit->ndf[i] == ndf)
