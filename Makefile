@@ -50,7 +50,7 @@ ifneq ($(shell $(PKG_CONFIG) --exists mpfr 2>/dev/null && echo yes),)
 CFLAGS_stability := -DHAVE_MPFR
 $(BUILD)/tests/stability: LIBS += -lmpfr
 endif
-ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
+ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine 2>/dev/null)),)
 AVX2 ?= yes
 endif
 ifeq ($(AVX2),yes)

@@ -245,6 +245,8 @@ static void mistyped_words_name_the_nearest(void **state)
 		{"fit a.binary --xyzzy", "unknown option '--xyzzy' (see"},
 		{"fit a.binary -y", "unknown option '-y' (see"},
 		{"fit a.binary --ndf ggx,bekmann", "did you mean beckmann?"},
+		{"fit a.binary --sigma 0,2", "a comma parts two numbers"},
+		{"ndf ggx --sigma 0,2 --theta 10", "a comma parts two numbers"},
 		{"ndf bekmann --theta 10 --sigma 1", "there is no NDF 'bekmann': did you mean beckmann?"},
 	};
 	for (size_t i = 0; i < sizeof typed / sizeof *typed; i++) {

@@ -564,3 +564,10 @@ void option_describe(FILE *file, const struct options *defaults, const struct op
 		fputs(")", file);
 	}
 }
+
+const char *option_comma_hint(const char *text)
+{
+	const size_t before = strspn(text, "0123456789"), after = text[before] == ',' ? before + 1 : 0;
+	const bool one = before && after && text[after] && text[after + strspn(text + after, "0123456789")] == '\0';
+	return one ? " (a comma parts two numbers: 0.2 is written with a point)" : "";
+}

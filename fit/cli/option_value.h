@@ -70,4 +70,7 @@ void option_describe(FILE *file, const struct options *defaults, const struct op
  * that is not fixed. */
 void option_write(FILE *file, const struct options *options, const struct option_spec *spec);
 
+/* option_comma_hint - for a refused text that may be one number with a decimal comma: what was read; else "". */
+const char *option_comma_hint(const char *text);
+
 #endif

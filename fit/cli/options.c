@@ -319,7 +319,8 @@ static int take_option(struct options *options, int i, const char *text)
 		return -1;
 	char shown[TEXT_QUOTE_SIZE];
 	text_quote(text, shown, sizeof shown);
-	return options_usage(options->command, "bad value '%s' for --%s: %s", shown, option_specs[i].name, error.text);
+	return options_usage(options->command, "bad value '%s' for --%s: %s%s", shown, option_specs[i].name, error.text,
+			     option_comma_hint(text));
 }
 
 /* Names of the long options of a command, in the order of its table, then "help" and "version". */
