@@ -166,7 +166,7 @@ static int by_error(const void *a, const void *b)
 	return memcmp(p->x, q->x, sizeof p->x);
 }
 
-enum { STARTS_MAX = 24 };
+enum { STARTS_MAX = 24, FIRST_POINTS_MAX = STARTS_MAX + SPACE_VALUES };
 
 /* The local minima of the grid, best first. Returns how many, at most STARTS_MAX. */
 static int pick_starts(const struct search *s, struct space_point *grid, struct space_point starts[])
@@ -422,7 +422,30 @@ static void note_slices(const struct search *s, const struct space_point *grid, 
 	}
 }
 
-/* The points to start from: the local minima of a scan. Returns how many, 0 on failure. */
+/* How far above the best of a scan the best of an index still counts. */
+#define BETWEEN 1.1
+
+/* Adds points between the indices of the scan: from one of them to the next F changes its form, and a minimum between two
+ * may look like a slope. There the other parameters are those of the better of both. Returns how many points there are. */
+static int add_between(const struct search *s, const struct scan_minima *minima, struct space_point point[], int count)
+{
+	const double enough = BETWEEN * (count > 0 ? point[0].error : 0);
+
+	for (int d = 0; d < s->space.dims; d++)
+		for (int i = 0; s->space.coordinate[d] == COORDINATE_IOR && i + 1 < s->space.axis[d].count; i++) {
+			const struct space_point *low = &minima->slice[d][i], *high = low + 1;
+			const struct space_point *better = low->error < high->error ? low : high;
+
+			if (better->error > enough)
+				continue;
+			point[count] = *better;
+			point[count++].x[d] = 0.5 * (low->x[d] + high->x[d]);
+		}
+	return count;
+}
+
+/* The points to start from: the local minima of a scan, and some between its points. Returns how many, at most
+ * FIRST_POINTS_MAX; 0 on failure. */
 static int first_points(struct search *s, struct space_point point[], struct scan_minima *minima, enum status *status)
 {
 	struct space_point *grid = calloc((size_t)grid_size(s, 0), sizeof *grid);
@@ -435,6 +458,8 @@ static int first_points(struct search *s, struct space_point point[], struct sca
 		count = pick_starts(s, grid, point);
 		if (count < 0)
 			*status = STATUS_NO_MEMORY;
+		else
+			count = add_between(s, minima, point, count);
 	}
 	free(grid);
 	return *status == STATUS_OK ? count : 0;
@@ -480,7 +505,7 @@ enum status search_run(const struct multiresolution *multiresolution, const stru
 		       const struct ndf_class *class, struct found *found)
 {
 	struct search s = new_search(multiresolution, options, class);
-	struct space_point *point = calloc(STARTS_MAX + (size_t)options->starts + 1, sizeof *point);
+	struct space_point *point = calloc(FIRST_POINTS_MAX + (size_t)options->starts, sizeof *point);
 	enum status status = point ? STATUS_OK : STATUS_NO_MEMORY;
 	int count = 1;
 
@@ -501,7 +526,7 @@ enum status search_estimate(const struct multiresolution *multiresolution, const
 			    const struct ndf_class *class, double *error)
 {
 	struct search s = new_search(multiresolution, options, class);
-	struct space_point point[STARTS_MAX + 1] = {{.error = 0}};
+	struct space_point point[FIRST_POINTS_MAX] = {{.error = 0}};
 	struct found found = {.starts = 0};
 	enum status status = STATUS_OK;
 	int count = s.space.dims > 0 ? first_points(&s, point, &found.minima, &status) : 1;
