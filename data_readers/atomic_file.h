@@ -3,28 +3,30 @@
 #ifndef ATOMIC_FILE_H
 #define ATOMIC_FILE_H
 
-#include "src/status.h"
+#include "data_readers/output.h"
 #include <stdio.h>
 
-/* struct atomic_file - an open output. The caller writes to `stream` and may leave checking for errors to the commit. A
- * caller that sees a write fail can store errno in `errnum`: the commit then fails with that reason instead of a general
- * one. */
+/* struct atomic_file - an open output. The caller writes to `stream` and may leave checking for errors to the
+ * commit. A caller that sees a write fail can store errno in `errnum`: the commit then fails with that reason
+ * instead of a general one. */
 struct atomic_file {
 	FILE *stream;
 	int errnum;
-	char *path;   /* as given, for messages */
-	char *target; /* the file to replace, symbolic links followed */
-	char *temp;   /* what is written meanwhile, in the same directory; NULL when written straight to the target */
+	bool keeps;           /* the commit keeps what it replaces as FILE~ */
+	struct output output; /* what it is to be */
+	char *temp;           /* what is written meanwhile, in the same directory; NULL when written in order */
 };
 
-/* atomic_file_open - starts writing `path`.
- * A symbolic link stays and what it points to is replaced. A replaced file keeps its mode and, where permitted, its
- * owner, a new one honours the umask. An existing target that is no regular file (terminal, /dev/null, pipe) and a name
- * of an open descriptor (/dev/stdout, /dev/fd/N) are opened directly, for appending; opening a named pipe waits
- * until it has a reader. Returns STATUS_IO if this fails (no such directory, no permission, target read-only or a
- * directory), STATUS_NO_MEMORY; `file` is then cleared and nothing is left behind. Errors read "cannot write 'path':
- * reason". */
+/* atomic_file_open - starts writing `path`; what that name means, output.h says.
+ * A replaced file keeps its mode and, where permitted, its owner; a new one honours the umask. Opening a named pipe
+ * waits until it has a reader. Returns STATUS_IO if this fails (no such directory, no permission, target read-only or a
+ * directory, another process writes it), STATUS_NO_MEMORY; `file` is then cleared and nothing is left behind. Errors
+ * read "cannot write 'path': reason". */
 MUST_CHECK enum status atomic_file_open(struct atomic_file *file, const char *path, struct error *error);
+
+/* atomic_file_take - the same for an output that is open, which is taken over with its lock: *output is cleared,
+ * even on failure. */
+MUST_CHECK enum status atomic_file_take(struct atomic_file *file, struct output *output, struct error *error);
 
 /* atomic_file_commit - flushes, syncs and closes the output and renames it to its target.
  * Returns STATUS_IO if any of this, or any write before, failed: the target is then as it was and the temporary file is

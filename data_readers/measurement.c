@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "data_readers/measurement.h"
+#include "data_readers/rgl.h"
 #include "src/names.h"
 #include <stdlib.h>
 #include <sys/mman.h>
@@ -9,6 +10,24 @@
 enum { HUGE_PAGE = 2 << 20 };
 
 static const char *const bins_names[BINS_COUNT] = {[BINS_NODE] = "node", [BINS_CENTRE] = "centre"};
+
+static const char *const symmetry_names[SYMMETRY_COUNT] = {
+	[SYMMETRY_ISOTROPIC] = "isotropic", [SYMMETRY_PLANE] = "plane", [SYMMETRY_ANISOTROPIC] = "anisotropic"};
+
+const char *symmetry_name(enum symmetry symmetry)
+{
+	return names_at(symmetry_names, SYMMETRY_COUNT, (int)symmetry);
+}
+
+enum status symmetry_find(const char *name, enum symmetry *symmetry)
+{
+	const int found = names_find(symmetry_names, SYMMETRY_COUNT, name);
+
+	if (found < 0)
+		return STATUS_DOMAIN;
+	*symmetry = (enum symmetry)found;
+	return STATUS_OK;
+}
 
 const char *bins_name(enum bins bins)
 {
@@ -89,9 +108,17 @@ enum status measurement_scattered(struct measurement *measurement, size_t n)
 	return STATUS_OK;
 }
 
+enum status measurement_require_table(const struct measurement *measurement, const char *what, struct error *why)
+{
+	return measurement->scattered
+		       ? error_set(why, STATUS_UNSUPPORTED, "%s takes a table, these are scattered samples", what)
+		       : STATUS_OK;
+}
+
 void measurement_free(struct measurement *measurement)
 {
 	scattered_free(measurement->scattered);
+	rgl_free(measurement->rgl);
 	free(measurement->value[0]);
 	*measurement = (struct measurement){0};
 }
@@ -148,4 +175,16 @@ struct halfdiff_trig bins_trig(enum bins bins, int i, int j, int k)
 	sincos_deg(at.theta_d, &t.sin_d, &t.cos_d);
 	sincos_deg(at.phi_d, &t.sin_phi, &t.cos_phi);
 	return t;
+}
+
+double cell_measure(int i, int j)
+{
+	const struct halfdiff low = bins_angles(BINS_NODE, i, j, 0), high = bins_angles(BINS_NODE, i + 1, j + 1, 0);
+	const double h0 = low.theta_h, h1 = high.theta_h, d0 = low.theta_d, d1 = high.theta_d;
+	/* cos a - cos b and (sin^2 b - sin^2 a)/2 as products: no cancellation in narrow cells. */
+	const double w_h = 2 * M_PI * 2 * sin((h0 + h1) / 2) * sin((h1 - h0) / 2);
+	const double w_d = sin(d0 + d1) * sin(d1 - d0) / 2;
+
+	/* phi_d is one degree wide in both variants of the table. */
+	return 4 * w_h * w_d * (M_PI / 180);
 }

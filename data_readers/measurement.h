@@ -23,9 +23,10 @@ enum { MERL_THETA_H = 90, MERL_THETA_D = 90, MERL_CHANNELS = 3 };
 
 /* How a sample may be turned without changing what is measured. */
 enum symmetry {
-	SYMMETRY_ISOTROPIC,  /* by any angle about its normal */
-	SYMMETRY_PLANE,      /* not, but it is its own mirror image in the plane y = 0 */
-	SYMMETRY_ANISOTROPIC /* not at all */
+	SYMMETRY_ISOTROPIC,   /* by any angle about its normal */
+	SYMMETRY_PLANE,       /* not, but it is its own mirror image in the plane y = 0 */
+	SYMMETRY_ANISOTROPIC, /* not at all */
+	SYMMETRY_COUNT
 };
 
 /* struct scattered - entries that lie anywhere. What could not be used is not among them, only counted. */
@@ -42,12 +43,22 @@ struct measurement {
 	int n_phi_d; /* 180 or 360: phi_d of entry k is k (or k + 1/2) degrees either way; 0: scattered */
 	float *value[MERL_CHANNELS]; /* 1/sr; in the order of measurement_at; NaN in all three channels = masked */
 	struct scattered *scattered; /* owned; NULL for a table */
+	struct rgl *rgl;             /* owned: the interpolant of a file that has its own (rgl.h); else NULL */
 	size_t n_negative;           /* entries masked for a negative value in some channel, all three being finite */
 	size_t n_nonfinite;          /* entries masked for NaN, Inf or a value beyond float in some channel */
 	size_t n_below_horizon;      /* scattered: entries left out for a direction at or below the horizon */
 	uint64_t file_size;          /* bytes of the file read; 0 for a table that was made */
 	uint64_t file_hash;          /* XXH3, 64 bits, of all those bytes, as `xxhsum -H3` prints it */
+	const char *format;          /* name of the file's format, static; NULL for what was made */
+	int n_channels;              /* scattered: values of an entry in the file: 1, 3 or the number of wavelengths */
+	size_t n_missing;            /* scattered: entries left out because the file has no value there */
+	size_t n_out_of_gamut;       /* scattered: entries whose colour has a negative part in linear sRGB */
 };
+
+/* symmetry_name - "isotropic", "plane", "anisotropic". */
+const char *symmetry_name(enum symmetry symmetry);
+/* symmetry_find - the reverse; STATUS_DOMAIN, *symmetry untouched, for another name. */
+MUST_CHECK enum status symmetry_find(const char *name, enum symmetry *symmetry);
 
 /* bins_name - "node" or "centre". */
 const char *bins_name(enum bins bins);
@@ -62,6 +73,9 @@ MUST_CHECK enum status measurement_reserve(struct measurement *measurement, int 
 /* measurement_scattered - room for n >= 1 scattered entries, all values unset, isotropic. STATUS_NO_MEMORY; *measurement is
  * then cleared. A reader that finds fewer lowers scattered->n. */
 MUST_CHECK enum status measurement_scattered(struct measurement *measurement, size_t n);
+/* measurement_require_table - STATUS_UNSUPPORTED, and that `what` ("fit", ...) needs a table, for scattered entries. */
+MUST_CHECK enum status measurement_require_table(const struct measurement *measurement, const char *what,
+						 struct error *why);
 /* measurement_free - releases the planes and clears the struct; harmless on a zeroed one. */
 void measurement_free(struct measurement *measurement);
 
@@ -94,5 +108,9 @@ int bins_mirror(enum bins bins, int k);
 /* bins_trig - sines and cosines of theta_h, theta_d and phi_d of entry (i, j, k), to the last ulp or two:
  * above 45 degrees computed from the complement, and exactly 0 or 1 where they should be. */
 struct halfdiff_trig bins_trig(enum bins bins, int i, int j, int k);
+
+/* cell_measure - solid angle of a cell in wi and wo, the integral of 4 cos_d dw_h dw_d over all phi_h and
+ * [i, i+1) x [j, j+1) x [k, k+1): sr^2. */
+double cell_measure(int i, int j);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "data_readers/merl.h"
 #include "data_readers/atomic_file.h"
+#include "data_readers/foreign_file.h"
 #include "data_readers/regular_file.h"
 #include "data_readers/text_quote.h"
 #include <endian.h>
@@ -112,6 +113,9 @@ static enum status read_header(int fd, size_t size, int *n_phi_d, struct header 
 
 	if (problem)
 		return read_failed(why, problem);
+	const char *foreign = foreign_file(header, length);
+	if (foreign)
+		return error_set(why, STATUS_FORMAT, "it %s", foreign);
 	if (looks_like_text((const unsigned char *)header, length))
 		return error_set(why, STATUS_FORMAT, "expected a binary MERL table, found what looks like text");
 	if (length < sizeof *header)
@@ -287,6 +291,11 @@ static enum status read_open(int fd, const struct stat *st, int threads, struct 
 	if (status != STATUS_OK)
 		return status;
 	const uint64_t size = file_size_for(n_phi_d);
+	/* Half the size of the larger table is that of the smaller one. */
+	if (n_phi_d == 180 && (uint64_t)st->st_size == sizeof header + (size - sizeof header) / 2)
+		return error_set(
+			why, STATUS_FORMAT,
+			"it has the size of a MERL table with numbers of 4 bytes: write them as 8 bytes (double)");
 	if ((uint64_t)st->st_size != size)
 		return error_set(why, STATUS_FORMAT, "expected %" PRIu64 " bytes for a 90 x 90 x %d table, found %jd",
 				 size, n_phi_d, (intmax_t)st->st_size);
@@ -339,7 +348,10 @@ enum status merl_write(const char *path, const struct measurement *measurement, 
 {
 	const struct header header = header_for(measurement->n_phi_d);
 	struct atomic_file file;
-	enum status status = atomic_file_open(&file, path, error);
+	enum status status = measurement_require_table(measurement, "a MERL file", error);
+
+	if (status == STATUS_OK)
+		status = atomic_file_open(&file, path, error);
 
 	if (status != STATUS_OK)
 		return status;

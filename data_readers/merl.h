@@ -18,7 +18,7 @@
  * `error` (may be NULL) says which file, what was expected, what was found. Never waits on a pipe or a device. */
 MUST_CHECK enum status merl_read(const char *path, int threads, struct measurement *measurement, struct error *error);
 
-/* merl_write - writes a table; masked entries as -1. Reading it again gives the same floats.
+/* merl_write - writes a table; masked entries as -1. STATUS_UNSUPPORTED for scattered entries. Reading it again gives the same floats.
  * Written beside `path`, synced, renamed when complete, see atomic_file.h. Returns STATUS_IO, STATUS_NO_MEMORY;
  * what was at `path` is then untouched. */
 MUST_CHECK enum status merl_write(const char *path, const struct measurement *measurement, struct error *error);

@@ -129,13 +129,21 @@ STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_weight(const stdfit_ndf *ndf, co
 						       double *weight, struct stdfit_error *error);
 
 /* stdfit_ndf_P22 - density of the slopes (p, q) along x and y; stdfit_ndf_P2 - of the slope q along azimuth phi;
- * stdfit_ndf_moment - integral of q^order P2, order even and >= 0: STDFIT_DOMAIN where it does not exist. */
+ * stdfit_ndf_moment - integral of q^order P2, order even and >= 0: STDFIT_DOMAIN where it does not exist;
+ * stdfit_ndf_excess_kurtosis - of P2, how heavy its tail is: 0 for beckmann, else STDFIT_DOMAIN unless gamma > 3. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_P22(const stdfit_ndf *ndf, double p, double q, double *density,
 						    struct stdfit_error *error);
 STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_P2(const stdfit_ndf *ndf, double phi, double q, double *density,
 						   struct stdfit_error *error);
 STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_moment(const stdfit_ndf *ndf, double phi, int order, double *moment,
 						       struct stdfit_error *error);
+STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_excess_kurtosis(const stdfit_ndf *ndf, double *kurtosis,
+								struct stdfit_error *error);
+
+/* stdfit_ndf_furnace - the share of light from everywhere that comes back after one reflection on facets that lose
+ * nothing; 1 for a lossless surface, to 1e-5. gaf as above. STDFIT_DOMAIN where sigma_x and sigma_y differ. */
+STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_furnace(const stdfit_ndf *ndf, const char *gaf, double *balance,
+							struct stdfit_error *error);
 
 /* ---- Models ---- */
 
@@ -161,9 +169,26 @@ STDFIT_MUST_CHECK enum stdfit_status stdfit_model_evaluate(const struct stdfit_m
 STDFIT_MUST_CHECK enum stdfit_status stdfit_model_albedo(const struct stdfit_model *model, const stdfit_ndf *ndf,
 							 double cos_i, double albedo[3], struct stdfit_error *error);
 
+/* stdfit_model_albedo_max - the largest albedo of any direction, to 1e-5 for kd, ks up to 1, and at *theta_i, radians, that
+ * direction. More than 1 is more light than comes in. STDFIT_DOMAIN as above. */
+STDFIT_MUST_CHECK enum stdfit_status stdfit_model_albedo_max(const struct stdfit_model *model, const stdfit_ndf *ndf,
+							     double albedo[3], double *theta_i,
+							     struct stdfit_error *error);
+
 /* stdfit_fresnel - reflectance F in [0, 1] at cos_d in [0, 1], ranges of n and k as above. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_fresnel(const char *fresnel, double cos_d, double n, double k, double *F,
 						    struct stdfit_error *error);
+
+/* ---- Half and difference angles ---- */
+
+/* stdfit_angles_to_directions - wi and wo of n triples theta_h, theta_d, phi_d, with h in the xz plane; z <= 0 where a
+ * direction lies below the horizon. Given: theta_h, theta_d in [0, pi/2], phi_d in [-2 pi, 2 pi].
+ * stdfit_angles_from_directions - the reverse, for any azimuth of the pair: theta_h in [0, pi], theta_d in [0, pi/2],
+ * phi_d in [0, 2 pi); an angle without meaning is 0, as phi_d for wi = wo and theta_h for wi = -wo. */
+STDFIT_MUST_CHECK enum stdfit_status stdfit_angles_to_directions(size_t n, const double *angles, double *wi, double *wo,
+								 struct stdfit_error *error);
+STDFIT_MUST_CHECK enum stdfit_status stdfit_angles_from_directions(size_t n, const double *wi, const double *wo,
+								   double *angles, struct stdfit_error *error);
 
 /* ---- Measurements ---- */
 
@@ -173,8 +198,9 @@ typedef struct stdfit_measurement stdfit_measurement;
  * (i, j, k) is number k + n_phi_d (j + 90 i) of a plane, and the three planes of red, green and blue follow one another:
  * 3 * 8100 * n_phi_d values, 1/sr. An entry that is negative or not finite in a channel is masked in all three. */
 
-/* stdfit_measurement_read - reads a MERL file; STDFIT_IO, STDFIT_FORMAT. stdfit_measurement_write - writes one: beside
- * `path` first, which is replaced when all is written. */
+/* stdfit_measurement_read - reads a measurement of any format that the program knows: STDFIT_IO, STDFIT_FORMAT, STDFIT_NO_DATA,
+ * STDFIT_UNSUPPORTED. Samples that lie anywhere are no grid: their n_phi_d is 0. stdfit_measurement_write - writes a MERL file: beside
+ * `path` first, which is replaced when all is written; STDFIT_UNSUPPORTED for samples. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_measurement_read(stdfit_measurement **measurement, const char *path,
 							     struct stdfit_error *error);
 STDFIT_MUST_CHECK enum stdfit_status stdfit_measurement_write(const stdfit_measurement *measurement, const char *path,
@@ -224,6 +250,7 @@ struct stdfit_options {
 	double blend;          /* 0, or in (0, 1): kd <= 1 - blend, ks <= blend */
 	int unbounded;         /* kd, ks may exceed 1; not with blend */
 	int diffuse, specular; /* whether the model has the terms: one at least */
+	int zero_is_missing;   /* entries that are 0 in all channels count as not measured */
 	int gray;              /* one kd and one ks for all channels */
 	int starts;            /* 0 .. 100000 extra random starts */
 	int threads;           /* 1 .. 1024; changes no result */
@@ -232,7 +259,7 @@ struct stdfit_options {
 	void (*trace)(void *data, const struct stdfit_step *step);
 	void *trace_data;
 	/* The fit stops soon after this has become other than 0; NULL: never. May be set by a signal handler, another
-	 * thread or the trace. */
+	 * thread or the trace, which runs beside threads that read it: those two store it atomically. */
 	const volatile int *cancel;
 };
 
@@ -282,8 +309,8 @@ void stdfit_result_clear(struct stdfit_result *result);
 
 typedef struct stdfit_context stdfit_context;
 
-/* stdfit_context_new - what fits of measurements with this n_phi_d share under the options' gaf, weight, bins and
- * max_theta. A fit with others is STDFIT_DOMAIN. */
+/* stdfit_context_new - what fits of measurements with this n_phi_d, 0 for scattered entries, share under the options' gaf,
+ * weight, bins, max_theta and zero_is_missing. A fit with others is STDFIT_DOMAIN. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_context_new(stdfit_context **context, int n_phi_d,
 							const struct stdfit_options *options,
 							struct stdfit_error *error);
@@ -302,8 +329,8 @@ STDFIT_MUST_CHECK enum stdfit_status stdfit_estimate(const stdfit_context *conte
 						     const struct stdfit_options *options, double *estimate,
 						     struct stdfit_error *error);
 
-/* stdfit_compare - the metrics of a model against a measurement, without a fit. Of the options bins, max_theta and threads
- * are read. */
+/* stdfit_compare - the metrics of a model against a measurement, without a fit. Of the options bins, max_theta,
+ * zero_is_missing and threads are read. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_compare(const stdfit_measurement *measurement,
 						    const struct stdfit_model *model, const stdfit_ndf *ndf,
 						    const struct stdfit_options *options,

@@ -3,7 +3,8 @@
 # usage: kill_test.sh STDFIT [KILLS [SEED]]
 # Kills a batch with SIGKILL at random moments and resumes it each time, until it has been killed KILLS times (200)
 # and come to its end. The table must then be that of an undisturbed run, `seconds` aside; rows that were finished must
-# never be made again or get lost. A batch that ends before it is killed begins anew. Works in a temporary directory.
+# never be made again or get lost. A batch that ends before it is killed begins anew. Then half as many kills of a batch
+# that replaces an older table: that is there still, under its name or as the backup. Works in a temporary directory.
 set -u
 
 stdfit=$(realpath "$1") || exit 1
@@ -27,9 +28,10 @@ random() {
 	random=$((state / 65536 % $1))
 }
 
-# The table without `seconds`, which is the column before the last eight; these hold no comma here.
+# The table without `seconds`; the cells of the columns behind it hold no comma here.
 without_seconds() {
-	sed 's/,[^,]*\(\(,[^,]*\)\{8\}\)$/\1/' "$1"
+	behind=$(head -n 1 "$1" | sed 's/.*,seconds//' | tr -cd , | wc -c)
+	sed 's/,[^,]*\(\(,[^,]*\)\{'"$behind"'\}\)$/\1/' "$1"
 }
 
 # Files of 33 MB: two that differ, under five names.
@@ -80,5 +82,25 @@ done
 "$stdfit" files $fit --resume -o cut.csv || fail "the last run failed"
 without_seconds cut.csv | cmp -s - whole || fail 'the table differs in the end'
 [ ! -e cut.csv~ ] || fail 'there are rows that were made again'
+
+n=0 replaced=0
+sed 's/,ggx,/,old,/' whole.csv >old.csv
+while [ "$n" -lt $((kills / 2)) ]; do
+	rm -f new.csv new.csv~ .stdfit-*.tmp
+	cp old.csv new.csv
+	random "$length"
+	# shellcheck disable=SC2086
+	timeout -s KILL "$((random / 1000)).$(printf '%03d' $((random % 1000)))" \
+		"$stdfit" files $fit -o new.csv 2>/dev/null
+	code=$? n=$((n + 1))
+	[ "$code" -eq 137 ] || [ "$code" -eq 0 ] || fail "exit code $code"
+	[ -e new.csv ] || fail 'the table is gone'
+	cmp -s new.csv old.csv && continue
+	replaced=$((replaced + 1))
+	cmp -s new.csv~ old.csv || fail 'the older table is lost'
+	[ "$(grep -c '^material,' new.csv)" -eq 1 ] || fail 'the new table has not one header'
+done
+n=$kills
 echo "kill_test: $n kills; the batch ended $((ends + 1)) times, each time with the same table;" \
-	"$torn torn rows cut off, $temporary temporary files left behind (seed $seed)"
+	"$torn torn rows cut off, $temporary temporary files left behind;" \
+	"then $((kills / 2)) older tables to be replaced, $replaced of them were, none lost (seed $seed)"

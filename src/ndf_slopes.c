@@ -36,7 +36,8 @@ enum status ndf_moment(const struct ndf *ndf, double phi, int order, double *mom
 	const double s = sigma_along(ndf, phi);
 	const double C = ndf->gamma;
 	double product = 1.0;
-	for (int k = 1; 2 * k <= order; k++) {
+	/* 0 and infinity stay what they are: high orders end early */
+	for (int k = 1; k <= order / 2 && product > 0 && isfinite(product); k++) {
 		/* a/(C - 1 - k), in terms of std where a is C - 1; 1 for Gaussian slopes */
 		const double widening = isinf(C) ? 1.0 : (C - 1.0) / (C - 1.0 - k);
 		product *= (k - 0.5) * widening * (s / ndf->stretch) * (s / ndf->stretch);

@@ -16,7 +16,12 @@
 #include <unistd.h>
 
 int fuzz_merl(const uint8_t *data, size_t size);         /* the MERL reader */
+int fuzz_rgl(const uint8_t *data, size_t size);          /* that of RGL files */
 int fuzz_table(const uint8_t *data, size_t size);        /* result tables: eval --from, compare, --resume */
+int fuzz_csv(const uint8_t *data, size_t size);          /* samples as CSV */
+int fuzz_alta(const uint8_t *data, size_t size);         /* ALTA texts */
+int fuzz_cornell(const uint8_t *data, size_t size);      /* Cornell texts */
+int fuzz_zemax(const uint8_t *data, size_t size);        /* Zemax texts */
 int fuzz_command_line(const uint8_t *data, size_t size); /* arguments */
 
 #define PROMISE(kept) ((kept) ? (void)0 : fuzz_broken(__FILE__, __LINE__, #kept))

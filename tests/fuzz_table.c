@@ -221,13 +221,15 @@ static void rewrite(struct store *store)
 	size_t kept = 0;
 	for (size_t i = 0; i < store->old.n_rows; i++) {
 		char *const *row = store->old.row[i];
-		const struct result_source source = {row[RESULT_PATH], row[RESULT_INPUT], row[RESULT_OPTIONS]};
+		const struct result_source source = {
+			.path = row[RESULT_PATH], .input = row[RESULT_INPUT], .options = row[RESULT_OPTIONS]};
 		PROMISE(result_failed(row) || strcmp(row[RESULT_VERSION], STDFIT_VERSION) ||
-			store_has(store, &source, row[RESULT_NDF]));
+			store->doubtful[i] || store_has(store, &source, row[RESULT_NDF]));
 	}
 	if (store->old.n_rows) {
 		char *const *row = store->old.row[0];
-		const struct result_source source = {row[RESULT_PATH], "another", row[RESULT_OPTIONS]};
+		const struct result_source source = {
+			.path = row[RESULT_PATH], .input = "another", .options = row[RESULT_OPTIONS]};
 		PROMISE(!store_has(store, &source, NULL) || !strcmp(row[RESULT_INPUT], "another"));
 		store_drop_stale(store, &source);
 	}

@@ -261,13 +261,18 @@ static void the_error_of_a_point(void **state)
 	objective_free(&objective);
 }
 
-/* From lobes that are high to ones that are low and back: what is left of the solve before must not end the next one. */
+/* From lobes that are high to ones that are low and back: what is left of the solve before must not end the next one.
+ * Where a lobe is so high that its ks is 1e-8, another one's ks is no place to begin either. */
 static void a_jump_to_another_lobe_ends_at_its_minimum(void **state)
 {
 	static const struct shape shapes[] = {
-		{2e-3, 1.9, 90, 0, 0, 0}, {0.3, 2.5, 1.2, 0, 0, 0},  {0.087, 9.5, 3.2, 0, 0, 0},
-		{0.01, 1.6, 30, 0, 0, 0}, {0.16, 2.2, 3.1, 0, 0, 0}, {1.5, 1.55, 1.05, 0, 0, 0},
-		{4e-3, 50, 60, 0, 0, 0},  {0.52, 1.6, 6.5, 0, 0, 0}, {0.12, 1.9, 1.6, 0, 0, 0}};
+		{2e-3, 1.9, 90, 0, 0, 0},       {0.3, 2.5, 1.2, 0, 0, 0},       {0.087, 9.5, 3.2, 0, 0, 0},
+		{0.01, 1.6, 30, 0, 0, 0},       {0.16, 2.2, 3.1, 0, 0, 0},      {1.5, 1.55, 1.05, 0, 0, 0},
+		{4e-3, 50, 60, 0, 0, 0},        {0.52, 1.6, 6.5, 0, 0, 0},      {0.12, 1.9, 1.6, 0, 0, 0},
+		{0.0849, 41, 1.101, 0, 0, 0},   {1.74e-4, 803, 100, 0, 0, 0},   {0.0396, 1.61, 1.002, 0, 0, 0},
+		{1.42e-4, 141, 13, 0, 0, 0},    {0.0258, 154, 1.007, 0, 0, 0},  {1.15e-4, 154, 43.7, 0, 0, 0},
+		{0.526, 17.6, 1.304, 0, 0, 0},  {1.05e-4, 910, 71.24, 0, 0, 0}, {0.0164, 1.5001, 1.012, 0, 0, 0},
+		{1.19e-4, 405, 12.67, 0, 0, 0}, {0.42, 1.5003, 1.002, 0, 0, 0}, {1.48e-4, 5.87, 70.55, 0, 0, 0}};
 	const struct fit_options o = options_for(NULL, NULL);
 	struct objective jumping, fresh;
 	struct linear found, wanted;
@@ -277,7 +282,6 @@ static void a_jump_to_another_lobe_ends_at_its_minimum(void **state)
 	assert_int_equal(objective_init(&jumping, &table, &o, o.ndf[0], 1, MASKING_COARSE), STATUS_OK);
 	assert_int_equal(objective_init(&fresh, &table, &o, o.ndf[0], 1, MASKING_COARSE), STATUS_OK);
 	for (size_t n = 0; n < sizeof shapes / sizeof *shapes; n++) {
-		objective_jump(&jumping, &shapes[n]);
 		objective_eval(&jumping, &shapes[n], 1e-6, false, &found);
 		objective_forget(&fresh);
 		objective_eval(&fresh, &shapes[n], 1e-7, true, &wanted);

@@ -5,6 +5,7 @@
 #include "fit/stdfit.h"
 #include "src/ndf.h"
 #include "src/vndf.h"
+#include <limits.h>
 #include <pthread.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -75,6 +76,9 @@ static void a_context_refuses_what_it_was_not_made_for(void **state)
 	other.gaf = "v-groove";
 	other.weight = "cosine";
 	expect(fit_with(&options, &other, 180, 180), STDFIT_DOMAIN, "v-groove, weight cosine");
+	other = options;
+	other.zero_is_missing = 1;
+	expect(fit_with(&options, &other, 180, 180), STDFIT_DOMAIN, "zero_is_missing 1: the options say");
 }
 
 static void options_out_of_range_are_refused(void **state)
@@ -137,8 +141,15 @@ static void null_and_nonsense_are_refused(void **state)
 	expect(stdfit_ndf_new(&other, NULL, 1, 1, 2, NULL, &error), STDFIT_DOMAIN, "(NULL)");
 	assert_null(other);
 	expect(stdfit_ndf_new(&other, "std", 1, 1, 1.5, NULL, &error), STDFIT_DOMAIN, "gamma 1.5");
+	expect(stdfit_ndf_new(&other, "a\nb\x1b", 1, 1, 2, NULL, &error), STDFIT_DOMAIN, "a\\x0ab\\x1b");
+	expect(stdfit_fresnel("\n", 1, 1, 0, value, &error), STDFIT_DOMAIN, "'\\x0a'");
+	value[1] = INFINITY;
+	expect(stdfit_ndf_weight(ndf, NULL, up, 1, up, value + 1, value, &error), STDFIT_DOMAIN, "found inf");
+	expect(stdfit_ndf_new(&other, "std", 0, 1, 2, NULL, &error), STDFIT_DOMAIN, "expected sigma in");
+	expect(stdfit_ndf_new(&other, "gtr", 1, 2, 2, NULL, &error), STDFIT_DOMAIN, "gtr is isotropic");
 	expect(stdfit_ndf_new(&other, "ggx", 1, 1, 2, "rational", &error), STDFIT_UNSUPPORTED, "rational");
 	expect(stdfit_ndf_new_piecewise(&other, 2, NULL, up, NULL, &error), STDFIT_DOMAIN, "theta");
+	expect(stdfit_ndf_new_piecewise(&other, 2, up, up, NULL, &error), STDFIT_DOMAIN, "increasing from 0 to pi/2");
 	expect(stdfit_ndf_new_ellipsoid(&other, NULL, &error), STDFIT_DOMAIN, "A is NULL");
 	expect(stdfit_ndf_evaluate(NULL, STDFIT_D, 1, up, value, &error), STDFIT_DOMAIN, "NULL");
 	expect(stdfit_ndf_evaluate(ndf, STDFIT_D, 1, NULL, value, &error), STDFIT_DOMAIN, "NULL");
@@ -158,7 +169,7 @@ static void null_and_nonsense_are_refused(void **state)
 	expect(stdfit_measurement_from_values(&measurement, 90, up, &error), STDFIT_DOMAIN, "found 90");
 	expect(stdfit_measurement_values(NULL, value, &error), STDFIT_DOMAIN, "NULL");
 	expect(stdfit_context_new(&context, 180, NULL, &error), STDFIT_DOMAIN, "options is NULL");
-	expect(stdfit_context_new(&context, 0, &options, &error), STDFIT_DOMAIN, "found 0");
+	expect(stdfit_context_new(&context, 90, &options, &error), STDFIT_DOMAIN, "found 90");
 	expect(stdfit_fit(NULL, NULL, &options, 1, NULL, &error), STDFIT_DOMAIN, "context is NULL");
 	expect(stdfit_estimate(NULL, NULL, &options, value, &error), STDFIT_DOMAIN, "context is NULL");
 	expect(stdfit_compare(NULL, &model, ndf, &options, &metrics, &error), STDFIT_DOMAIN, "measurement");
@@ -194,6 +205,56 @@ static void values_are_those_of_the_internals(void **state)
 	const struct vec3 want = vndf_sample(&inner, (struct vec3){0.6, 0, 0.8}, 0.3, 0.7);
 
 	assert_true(normal[0] == want.x && normal[1] == want.y && normal[2] == want.z);
+	stdfit_ndf_free(ndf);
+}
+
+static void angles_and_directions_are_inverse(void **state)
+{
+	const double angles[6] = {0.3, 0.5, 1, 0, 1.2, 0}, wrong[3] = {0.3, NAN, 1};
+	double wi[6], wo[6], back[6];
+
+	(void)state;
+	expect(stdfit_angles_to_directions(2, angles, wi, wo, &error), STDFIT_OK, "");
+	expect(stdfit_angles_from_directions(2, wi, wo, back, &error), STDFIT_OK, "");
+	for (int i = 0; i < 3; i++)
+		assert_true(fabs(back[i] - angles[i]) < 1e-14);
+	assert_true(fabs(back[3]) < 1e-14 && fabs(back[4] - angles[4]) < 1e-14);
+	expect(stdfit_angles_to_directions(1, wrong, wi, wo, &error), STDFIT_DOMAIN, "[0, pi/2]");
+	expect(stdfit_angles_to_directions(1, NULL, wi, wo, &error), STDFIT_DOMAIN, "NULL");
+	expect(stdfit_angles_from_directions(1, wi, wrong, back, &error), STDFIT_DOMAIN, "wo number 0");
+	expect(stdfit_angles_from_directions(1, wi, wo, NULL, &error), STDFIT_DOMAIN, "angles is NULL");
+}
+
+static void energy_and_kurtosis_have_their_known_values(void **state)
+{
+	stdfit_ndf *ndf = new_ndf("std", 1e-3, 5), *skew = NULL;
+	struct stdfit_model model = stdfit_model_default();
+	double value, albedo[3], theta_i = -1;
+
+	(void)state;
+	expect(stdfit_ndf_excess_kurtosis(ndf, &value, &error), STDFIT_OK, "");
+	check_rel(value, 1.5, 1e-14, "3/(gamma - 3)");
+	expect(stdfit_ndf_furnace(ndf, NULL, &value, &error), STDFIT_OK, "");
+	assert_true(value > 0.99 && value <= 1 + 1e-5); /* nearly a mirror */
+	model.fresnel = "none";
+	model.kd[0] = 0.5;
+	expect(stdfit_model_albedo_max(&model, ndf, albedo, &theta_i, &error), STDFIT_OK, "");
+	assert_true(fabs(albedo[0] - 1.5) < 1e-3 && fabs(albedo[1] - 1) < 1e-3);
+	assert_true(theta_i >= 0 && theta_i <= M_PI / 2);
+	expect(stdfit_ndf_new(&skew, "ggx", 0.1, 0.3, 2, NULL, &error), STDFIT_OK, "");
+	stdfit_ndf *const gaussian = new_ndf("beckmann", 0.5, 0);
+
+	/* the greatest even order; it neither overflows nor takes seconds */
+	expect(stdfit_ndf_moment(gaussian, 0, INT_MAX - 1, &value, &error), STDFIT_OK, "");
+	assert_true(isinf(value));
+	stdfit_ndf_free(gaussian);
+	expect(stdfit_ndf_excess_kurtosis(skew, &value, &error), STDFIT_DOMAIN, "no kurtosis");
+	expect(stdfit_ndf_excess_kurtosis(ndf, NULL, &error), STDFIT_DOMAIN, "NULL");
+	expect(stdfit_ndf_furnace(skew, NULL, &value, &error), STDFIT_DOMAIN, "isotropic");
+	expect(stdfit_ndf_furnace(ndf, "none", &value, &error), STDFIT_DOMAIN, "'none'");
+	expect(stdfit_model_albedo_max(&model, skew, albedo, &theta_i, &error), STDFIT_DOMAIN, "isotropic");
+	expect(stdfit_model_albedo_max(&model, ndf, albedo, NULL, &error), STDFIT_DOMAIN, "NULL");
+	stdfit_ndf_free(skew);
 	stdfit_ndf_free(ndf);
 }
 
@@ -292,6 +353,8 @@ int main(void)
 		cmocka_unit_test(options_out_of_range_are_refused),
 		cmocka_unit_test(null_and_nonsense_are_refused),
 		cmocka_unit_test(values_are_those_of_the_internals),
+		cmocka_unit_test(angles_and_directions_are_inverse),
+		cmocka_unit_test(energy_and_kurtosis_have_their_known_values),
 		cmocka_unit_test(a_fit_on_a_small_stack_recovers_its_parameters),
 		cmocka_unit_test(a_child_can_fit_on_one_thread),
 		cmocka_unit_test(the_flag_cancels),

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program itself: exit codes, both streams, bad input, batches, kill and resume. Runs $STDFIT or build/stdfit. */
+#include "fit/cli/stack.h"
 #include "run_program.h"
 #include "src/energy.h"
 
@@ -353,6 +354,17 @@ static void directories_below_are_searched_if_asked(void **state)
 	assert_int_equal(table.n_rows, 2);
 	assert_string_equal(table.row[0][RESULT_PATH], "tree/top.binary");
 	csv_table_free(&table);
+	/* Where there is nothing but below, -r is mentioned; capitals count. */
+	shell("mkdir upper; ln a.binary upper/A.BINARY");
+	stdfit("tree/b " CHEAP);
+	expect_error(1, "-r takes those in the directories below");
+	shell("mkdir -p hollow/x; exec \"$STDFIT\" hollow");
+	expect_error(1, "no measurement of a known format in this directory\n");
+	stdfit("upper --ndf ggx --no-specular");
+	expect_code(0);
+	table = read_table("stdout");
+	assert_string_equal(table.row[0][RESULT_MATERIAL], "A");
+	csv_table_free(&table);
 	stdfit("-r tree/ " CHEAP);
 	expect_code(0);
 	table = read_table("stdout");
@@ -662,10 +674,13 @@ static void compare_summarises_tables(void **state)
 	expect_error(2, "--threads means nothing");
 	stdfit("compare a.binary four.csv");
 	expect_error(2, "expected one table");
-	/* An older output moves out of the way, were it the input. */
-	shell("cp four.csv five.csv; cp four.csv kept.csv; exec \"$STDFIT\" compare five.csv -o five.csv");
+	/* An older output moves out of the way, were it no table at all; the input does not. */
+	shell("cp four.csv five.csv; echo old >six.csv; \"$STDFIT\" compare four.csv -o six.csv && cat six.csv~");
 	expect_code(0);
-	shell("cmp five.csv~ kept.csv");
+	assert_string_equal(last.out, "old\n");
+	stdfit("compare five.csv -o five.csv");
+	expect_error(2, "--output names a file that is to be read");
+	shell("cmp four.csv five.csv && ! test -e five.csv~");
 	expect_code(0);
 	write_text("mixed-options.csv", "material,ndf,error,options\na,std,0.1,weight=none\na,ggx,0.2,weight=cosine\n");
 	stdfit("compare mixed-options.csv");
@@ -702,6 +717,144 @@ static void within_takes_the_simplest(void **state)
 	assert_string_equal(table.row[0][RESULT_NDF], "ggx");
 	check_rel(result_number(table.row[0], RESULT_KD_B), 0.1, 1e-2, "kd_b");
 	csv_table_free(&table);
+}
+
+/* Zeros at theta_d of 20 to 49 degrees of the rows 30 to 44 of theta_h. */
+static void dig_a_hole(const char *path)
+{
+	static const double zeros[30 * 180];
+	const int fd = open(path, O_WRONLY);
+	assert_true(fd >= 0);
+	for (int c = 0; c < 3; c++)
+		for (int i = 30; i < 45; i++)
+			assert_int_equal(pwrite(fd, zeros, sizeof zeros, 12 + 8L * 180 * ((c * 90 + i) * 90 + 20)),
+					 sizeof zeros);
+	assert_int_equal(close(fd), 0);
+}
+
+static void faults_of_the_data_are_told(void **state)
+{
+	(void)state;
+	shell("mkdir holes; cp a.binary holes/h.binary");
+	dig_a_hole("holes/h.binary");
+	stdfit("info holes/h.binary a.binary --json");
+	expect_code(0);
+	expect_out("exact zeros beside bright values: --zero-is-missing leaves them out");
+	expect_out("\"suspects\": null");
+	expect_out("\"measured_0\": 1,");
+	stdfit("holes/h.binary a.binary --ndf ggx --no-specular -o holes.csv");
+	expect_code(0);
+	expect_part(last.err, "stdfit: 'holes/h.binary' looks wrong: ", __LINE__);
+	expect_part(last.err, "--zero-is-missing", __LINE__);
+	assert_null(strstr(last.err, "a.binary'"));
+	struct csv_table table = read_table("holes.csv");
+	assert_string_equal(table.row[0][RESULT_SUSPECTS], "");
+	assert_string_equal(table.row[1][RESULT_SUSPECTS], "zeros");
+	csv_table_free(&table);
+	/* The row says that zeros were left out: so resume, merge, compare and eval know. */
+	stdfit("holes/h.binary a.binary --ndf ggx --no-specular --zero-is-missing --resume -o holes.csv");
+	expect_code(0);
+	assert_string_equal(last.err, "");
+	table = read_table("holes.csv");
+	expect_part(table.row[1][RESULT_OPTIONS], " max-theta=90 zero-is-missing=yes unbounded=no", __LINE__);
+	assert_string_equal(table.row[1][RESULT_SUSPECTS], "");
+	assert_true(result_number(table.row[1], RESULT_SAMPLES) < result_number(table.row[0], RESULT_SAMPLES));
+	char *error = strdup(table.row[1][RESULT_ERROR_COSINE]);
+	csv_table_free(&table);
+	stdfit("eval holes/h.binary --from holes.csv");
+	expect_out(error);
+	free(error);
+	shell("mv holes.csv~ before.csv");
+	stdfit("merge holes.csv before.csv -o all.csv");
+	expect_error(1, "zero-is-missing");
+}
+
+static void small_stacks_are_made_larger_or_told(void **state)
+{
+	static const struct {
+		const char *text;
+		size_t bytes; /* 0: no size */
+	} sizes[] = {{"16k", 16384},
+		     {" 16 K ", 16384},
+		     {"16", 16384},
+		     {"1024B", 1024},
+		     {"2M", 2 << 20},
+		     {"1g", 1 << 30},
+		     {"", 0},
+		     {"k", 0},
+		     {"-1", 0},
+		     {"1kk", 0},
+		     {"1x", 0},
+		     {"1 2", 0},
+		     {"99999999999999999999", 0},
+		     {"99999999999G", 0}};
+	(void)state;
+	for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+		size_t bytes = 0;
+		assert_int_equal(stack_parse_size(sizes[s].text, &bytes), sizes[s].bytes > 0);
+		assert_int_equal(bytes, sizes[s].bytes);
+	}
+	shell("ulimit -S -s 128; exec \"$STDFIT\" a.binary --threads 2 -q " CHEAP);
+	expect_code(0);
+	shell("ulimit -s 128; exec \"$STDFIT\" a.binary --threads 2 -q " CHEAP);
+	expect_error(1, "the stack may not grow beyond 128 kB: expected 256 or more (ulimit -s)");
+	shell("OMP_STACKSIZE=16k exec \"$STDFIT\" a.binary --threads 2 -q " CHEAP);
+	expect_error(1, "OMP_STACKSIZE=16k is too small: expected 256K or more, or none");
+	shell("OMP_NUM_THREADS=99999 exec \"$STDFIT\" eval a.binary --kd 0.5");
+	expect_code(0);
+	stdfit("a.binary --threads 99999");
+	expect_error(2, "bad value '99999' for --threads: expected a whole number from 1 to 1024");
+}
+
+/* Cells of a table that would colour the terminal, ring its bell or turn the order of letters round. */
+#define EVIL                                                                                                           \
+	"\x1b[31m\xe2\x80\xae"                                                                                         \
+	"evil\xe2\x81\xa6\x07\xc2\x9b"
+
+static void expect_tame(const char *text, int line)
+{
+	static const char *const evil[] = {"\x1b", "\xe2\x80\xae", "\xe2\x81\xa6", "\x07", "\xc2\x9b"};
+	for (size_t e = 0; e < sizeof evil / sizeof *evil; e++)
+		if (strstr(text, evil[e]))
+			fail_msg("line %d: control characters in: %s", line, text);
+}
+
+static void cells_leave_the_terminal_alone(void **state)
+{
+	static const enum result_column evil[] = {RESULT_MATERIAL, RESULT_NDF, RESULT_AT_BOUND, RESULT_OPTIONS};
+	(void)state;
+	stdfit("a.binary --ndf ggx --no-specular -q -o tame.csv");
+	expect_code(0);
+	for (size_t e = 0; e < sizeof evil / sizeof *evil; e++) {
+		struct csv_table table = read_table("tame.csv");
+		char *cells[RESULT_COLUMNS];
+		memcpy(cells, table.row[0], sizeof cells);
+		cells[evil[e]] = EVIL;
+		FILE *file = fopen("evil.csv", "w");
+		assert_non_null(file);
+		csv_write_header(file, result_columns, RESULT_COLUMNS);
+		csv_write_row(file, cells, RESULT_COLUMNS);
+		assert_int_equal(fclose(file), 0);
+		csv_table_free(&table);
+		static const char *const commands[] = {"merge evil.csv --table",
+						       "compare evil.csv --table",
+						       "merge evil.csv tame.csv --table",
+						       "compare evil.csv --json",
+						       "report evil.csv -o evil --size 8 --samples 1 -q",
+						       "eval a.binary --from evil.csv --row 1 --table"};
+		for (size_t c = 0; c < sizeof commands / sizeof *commands; c++) {
+			stdfit(commands[c]);
+			expect_tame(last.out, __LINE__);
+			expect_tame(last.err, __LINE__);
+		}
+		char *page = slurp("evil/index.html");
+		expect_tame(page, __LINE__);
+		free(page);
+	}
+	/* JSON keeps them, escaped. */
+	shell("sed \"s/^a,/$(printf 'a\\033\\342\\200\\256'),/\" tame.csv >evil.csv; exec \"$STDFIT\" merge evil.csv "
+	      "--json");
+	expect_out("\"material\": \"a\\u001b\\u202e\"");
 }
 
 static void noise_follows_the_seed(void **state)
@@ -743,6 +896,9 @@ int main(void)
 		cmocka_unit_test(a_reader_that_is_gone_ends_it_quietly),
 		cmocka_unit_test(compare_summarises_tables),
 		cmocka_unit_test(within_takes_the_simplest),
+		cmocka_unit_test(faults_of_the_data_are_told),
+		cmocka_unit_test(small_stacks_are_made_larger_or_told),
+		cmocka_unit_test(cells_leave_the_terminal_alone),
 		cmocka_unit_test(noise_follows_the_seed),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);

@@ -188,7 +188,7 @@ static void wrong_usage_is_refused(void **state)
 	stdfit("render m.binary " MODEL " " QUICK " -o no/such/place.pfm");
 	expect_error(1, "cannot write 'no/such/place.pfm'");
 	stdfit("render m.binary " MODEL " -o no.jpg");
-	expect_error(2, "expected -o FILE.png or -o FILE.pfm");
+	expect_error(2, "expected -o FILE.png, -o FILE.pfm or -o -");
 	stdfit("render m.binary " MODEL " --light 0,0,0");
 	expect_error(2, "bad value '0,0,0' for --light");
 	stdfit("render m.binary " MODEL " --light 1,2,3,4,5");

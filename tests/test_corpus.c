@@ -58,6 +58,12 @@ static void merl_reader_keeps_its_promises(void **state)
 	run_corpus("merl", fuzz_merl);
 }
 
+static void rgl_reader_keeps_its_promises(void **state)
+{
+	(void)state;
+	run_corpus("rgl", fuzz_rgl);
+}
+
 static void result_tables_keep_their_promises(void **state)
 {
 	(void)state;
@@ -68,6 +74,30 @@ static void command_lines_keep_their_promises(void **state)
 {
 	(void)state;
 	run_corpus("command_line", fuzz_command_line);
+}
+
+static void csv_reader_keeps_its_promises(void **state)
+{
+	(void)state;
+	run_corpus("csv", fuzz_csv);
+}
+
+static void alta_reader_keeps_its_promises(void **state)
+{
+	(void)state;
+	run_corpus("alta", fuzz_alta);
+}
+
+static void cornell_reader_keeps_its_promises(void **state)
+{
+	(void)state;
+	run_corpus("cornell", fuzz_cornell);
+}
+
+static void zemax_reader_keeps_its_promises(void **state)
+{
+	(void)state;
+	run_corpus("zemax", fuzz_zemax);
 }
 
 static void json_check_knows_json(void **state)
@@ -94,8 +124,13 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(json_check_knows_json),
 		cmocka_unit_test(merl_reader_keeps_its_promises),
+		cmocka_unit_test(rgl_reader_keeps_its_promises),
 		cmocka_unit_test(result_tables_keep_their_promises),
 		cmocka_unit_test(command_lines_keep_their_promises),
+		cmocka_unit_test(csv_reader_keeps_its_promises),
+		cmocka_unit_test(alta_reader_keeps_its_promises),
+		cmocka_unit_test(cornell_reader_keeps_its_promises),
+		cmocka_unit_test(zemax_reader_keeps_its_promises),
 	};
 	signal(SIGABRT, on_abort); /* returns, and then it ends all the same */
 	alarm(120);                /* a hang ends */

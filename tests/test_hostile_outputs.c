@@ -105,7 +105,7 @@ static void old_files_on_a_full_disk_stay(void **state)
 		{"export " MODEL " --format merl", "x.binary"}, {"synth", "x.binary"},
 		{"render a.binary " MODEL " " QUICK, "x.pfm"},  {"render a.binary " MODEL " " QUICK, "x.png"},
 		{"compare fit.csv --pictures", "x.csv"},        {"merge fit.csv", "x.csv"},
-		{"a.binary " CHEAP " --json", "x.json"},
+		{"a.binary " CHEAP " --json", "x.json"},        {"a.binary " CHEAP, "x.csv"},
 	};
 	mount_disk("size=64k");
 	for (size_t c = 0; c < sizeof command / sizeof *command; c++) {

@@ -2,6 +2,7 @@
 /* The MERL reader and writer, the table they fill, and output that is there whole or not at all. */
 #include "check.h"
 #include "data_readers/atomic_file.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/merl.h"
 #include "data_readers/text_quote.h"
 #include <dirent.h>
@@ -556,7 +557,6 @@ static void wrong_dimensions_are_refused(void **state)
 		{INT32_MAX, INT32_MAX, INT32_MAX},
 		{INT32_MIN, INT32_MIN, INT32_MIN},
 		{90, 90, 720},
-		{0x5a000000, 0x5a000000, -0x4c000000}, /* the right ones, big-endian */
 	};
 	char words[128];
 
@@ -581,6 +581,39 @@ static void text_is_refused(void **state)
 		check_refused(make_file(*state, "x.csv", texts[t], length, (off_t)length), STATUS_FORMAT,
 			      "looks like text");
 	}
+}
+
+static void foreign_files_are_named(void **state)
+{
+	static const struct {
+		const char *head;
+		size_t size;
+		const char *words;
+	} kinds[] = {
+		{"\x1f\x8b\x08\0\0\0\0\0\0\x03xx", 12, "gzip: expand it with gunzip"},
+		{"\xfd"
+		 "7zXZ\0\0\4xxxx",
+		 12, "xz: expand it with unxz"},
+		{"\x28\xb5\x2f\xfdxxxxxxxx", 12, "zstd: expand it with unzstd"},
+		{"BZh91AY&SYxx", 12, "bzip2: expand it with bunzip2"},
+		{"PK\3\4xxxxxxxx", 12, "zip archive: unpack it with unzip"},
+		{"\0\0\0\x5a\0\0\0\x5a\0\0\0\xb4", 12, "big-endian"},
+		{"\0\0\0\x5a\0\0\0\x5a\0\0\1\x68", 12, "big-endian"},
+	};
+
+	/* By the reader of MERL files, and by the one that finds the format of a file. */
+	for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+		const char *path = make_file(*state, "x.binary", kinds[k].head, kinds[k].size, SIZE_180);
+		struct measurement measurement;
+		struct error error;
+
+		check_refused(path, STATUS_FORMAT, kinds[k].words);
+		assert_int_equal(measurement_read(path, NULL, &measurement, &error), STATUS_FORMAT);
+		assert_non_null(strstr(error.text, kinds[k].words));
+	}
+	check_refused(make_file(*state, "x.binary", "\x1f\x8b\x08", 3, 3), STATUS_FORMAT, "gunzip");
+	check_refused(make_table(*state, "x", 90, 90, 180, 12 + (SIZE_180 - 12) / 2), STATUS_FORMAT,
+		      "numbers of 4 bytes");
 }
 
 static void a_huge_file_is_refused(void **state)
@@ -693,6 +726,9 @@ static void quoted_text_is_one_printable_line(void **state)
 		{"\x7f", "\\x7f"},
 		{"\xc2\x85", "\\xc2\\x85"},          /* a control character, beyond ASCII */
 		{"\xe2\x82\xac", "\xe2\x82\xac"},    /* a euro sign */
+		{"\xe2\x80\xae", "\\xe2\\x80\\xae"}, /* from here on from right to left */
+		{"\xe2\x81\xa9", "\\xe2\\x81\\xa9"},
+		{"\xd8\x9c", "\\xd8\\x9c"},
 		{"\xe2\x82", "\\xe2\\x82"},          /* cut short */
 		{"\xc0\xaf", "\\xc0\\xaf"},          /* overlong */
 		{"\xed\xa0\x80", "\\xed\\xa0\\x80"}, /* a surrogate */
@@ -986,6 +1022,7 @@ int main(void)
 		TEST(wrong_sizes_are_refused),
 		TEST(wrong_dimensions_are_refused),
 		TEST(text_is_refused),
+		TEST(foreign_files_are_named),
 		TEST(a_huge_file_is_refused),
 		TEST(an_unreadable_file_is_refused),
 		TEST(errors_while_reading_are_reported),

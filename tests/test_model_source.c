@@ -54,7 +54,7 @@ static void same_model(const struct source_model *a, const struct source_model *
 static void write_table(const char *path, const struct model_source *source)
 {
 	struct csv_table table = csv_table_make(result_columns, RESULT_COLUMNS);
-	const struct result_source from = {"m.binary", "", ""};
+	const struct result_source from = {.path = "m.binary", .input = "", .options = ""};
 	FILE *file = fopen(path, "w");
 
 	assert_non_null(file);

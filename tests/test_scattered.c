@@ -93,7 +93,7 @@ static void check_setting(const struct setting *s)
 	double difference = 0, measured = 0;
 	char label[64];
 
-	o.criterion = (struct criterion){s->gaf, s->weight, BINS_NODE, s->max_theta};
+	o.criterion = (struct criterion){s->gaf, s->weight, BINS_NODE, s->max_theta, false};
 	o.threads = 2;
 	assert_int_equal(ndf_init(&truth.ndf, ndf_find(s->ndf), s->sigma_x, s->sigma_y, s->gamma), STATUS_OK);
 	assert_int_equal(ndf_turn(&truth.ndf, s->angle), STATUS_OK);

@@ -221,10 +221,12 @@ static void E_is_right_over_the_range_of_floats(void **state)
 				measurement.value[c][e] = scale[i];
 		assert_int_equal(sample_set_init(&table, &geometry, &measurement, 1), STATUS_OK);
 		assert_int_equal(objective_init(&o, &table, &options, ndf_find("std"), 1, MASKING_COARSE), STATUS_OK);
-		const double E = objective_eval(&o, &(struct shape){0.1, 3.0, 1.5, 0.0}, 1e-6, true, &linear);
+		const double E = objective_eval(&o, &(struct shape){.sigma = 0.1, .gamma = 3.0, .ior = 1.5}, 1e-6, true,
+						&linear);
 		check_between(E, scale[i] > 1.0f ? 1.0 - 1e-5 : 0.0, 1.0 + 1e-6, "E");
 		/* A lobe sharper than a float can hold stays one. */
-		assert_int_equal(objective_lobe(&o, &(struct shape){1e-40, 3.0, 1.5, 0.0}), STATUS_OK);
+		assert_int_equal(objective_lobe(&o, &(struct shape){.sigma = 1e-40, .gamma = 3.0, .ior = 1.5}),
+				 STATUS_OK);
 		for (int n = 0; n < table.n_blocks * KERNEL_BLOCK; n++)
 			if (!(o.s[n] >= 0.0f && o.s[n] <= FLT_MAX))
 				fail_msg("lobe of slot %d is %g", n, (double)o.s[n]);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/api/api.h"
+#include "data_readers/text_quote.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -36,6 +37,14 @@ enum stdfit_status api_end(struct stdfit_error *error, enum status status, const
 	if (status == STATUS_OK)
 		return STDFIT_OK;
 	return api_fail(error, status, "%s", why && why->text[0] ? why->text : status_str(status));
+}
+
+enum stdfit_status api_unknown(struct stdfit_error *error, const char *what, const char *name)
+{
+	char quoted[TEXT_QUOTE_SIZE]; /* any bytes may be in it: the text stays one line */
+
+	text_quote(name, quoted, sizeof quoted);
+	return api_fail(error, STATUS_DOMAIN, "%s: there is none called '%s'", what, quoted);
 }
 
 enum stdfit_status api_gaf(const char *name, enum gaf *gaf, struct stdfit_error *error)

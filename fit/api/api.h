@@ -25,7 +25,7 @@ void api_explain(struct stdfit_error *error, const char *format, ...) __attribut
 /* api_fail - a failure with its text; its value is `status`, which static analysis can see because this is a macro. */
 #define api_fail(error, status, ...) (api_explain(error, __VA_ARGS__), (enum stdfit_status)(status))
 /* api_unknown - the failure of a name of `what` that is not known. */
-#define api_unknown(error, what, name) api_fail(error, STATUS_DOMAIN, "%s: there is none called '%.100s'", what, name)
+MUST_CHECK enum stdfit_status api_unknown(struct stdfit_error *error, const char *what, const char *name);
 /* api_end - the public form of an internal end; `why` may be empty. */
 enum stdfit_status api_end(struct stdfit_error *error, enum status status, const struct error *why);
 
@@ -43,6 +43,16 @@ MUST_CHECK enum stdfit_status api_class_ndf(const struct stdfit_ndf *ndf, const 
 /* api_model - a model, checked. */
 MUST_CHECK enum stdfit_status api_model(const struct stdfit_model *model, const struct stdfit_ndf *ndf,
 					struct cook_torrance *inner, struct stdfit_error *error);
+
+/* api_isotropic - whether sigma_x and sigma_y are one. */
+MUST_CHECK enum stdfit_status api_isotropic(const struct ndf *ndf, struct stdfit_error *error);
+
+static inline void api_put(double *out, struct vec3 v)
+{
+	out[0] = v.x;
+	out[1] = v.y;
+	out[2] = v.z;
+}
 
 static inline struct vec3 api_vec(const double *d)
 {

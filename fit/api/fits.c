@@ -54,8 +54,7 @@ static enum stdfit_status read_ndfs(const char *names, struct fit_options *inner
 			return api_fail(error, STATUS_DOMAIN, "ndfs: expected at most %d", FIT_NDFS_MAX);
 		inner->ndf[inner->n_ndf] = ndf_find(name);
 		if (!inner->ndf[inner->n_ndf++])
-			return api_fail(error, STATUS_DOMAIN, "ndfs: there is none called '%.*s'",
-					length < 100 ? (int)length : 100, at);
+			return api_unknown(error, "ndfs", length < sizeof name ? name : at);
 		at = at[length] ? at + length + 1 : NULL;
 	}
 	return STDFIT_OK;
@@ -114,6 +113,7 @@ static enum stdfit_status read_options(const struct stdfit_options *options, str
 	if (status != STDFIT_OK)
 		return status;
 	inner->criterion.max_theta = options->max_theta;
+	inner->criterion.zero_is_missing = options->zero_is_missing;
 	inner->sigma = options->sigma;
 	inner->gamma = options->gamma;
 	inner->ior = options->n;
@@ -144,8 +144,9 @@ enum stdfit_status stdfit_context_new(stdfit_context **context, int n_phi_d, con
 		return api_fail(error, STATUS_DOMAIN, "context is NULL");
 	*context = NULL;
 	status = read_options(options, &inner, error);
-	if (status == STDFIT_OK && n_phi_d != 180 && n_phi_d != 360)
-		status = api_fail(error, STATUS_DOMAIN, "expected n_phi_d 180 or 360, found %d", n_phi_d);
+	if (status == STDFIT_OK && n_phi_d != 0 && n_phi_d != 180 && n_phi_d != 360)
+		status = api_fail(error, STATUS_DOMAIN,
+				  "expected n_phi_d 180 or 360, or 0 for scattered entries, found %d", n_phi_d);
 	if (status != STDFIT_OK)
 		return status;
 	stdfit_context *made = calloc(1, sizeof *made);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "data_readers/measurement_read.h"
 #include "data_readers/merl.h"
 #include "fit/api/api.h"
 #include "fit/error/model_table.h"
@@ -42,7 +43,7 @@ enum stdfit_status stdfit_measurement_read(stdfit_measurement **measurement, con
 	if (!path)
 		status = api_fail(error, STATUS_DOMAIN, "path is NULL");
 	else
-		status = api_end(error, merl_read(path, 1, &(*measurement)->grid, &why), &why);
+		status = api_end(error, measurement_read(path, NULL, &(*measurement)->grid, &why), &why);
 	return give_up(measurement, status);
 }
 
@@ -117,6 +118,10 @@ enum stdfit_status stdfit_measurement_values(const stdfit_measurement *measureme
 {
 	if (!measurement || !values)
 		return api_fail(error, STATUS_DOMAIN, "measurement or values is NULL");
+	struct error why = {""};
+
+	if (measurement_require_table(&measurement->grid, "this call", &why) != STATUS_OK)
+		return api_end(error, STATUS_UNSUPPORTED, &why);
 	const size_t plane = measurement_count(&measurement->grid);
 
 	for (int c = 0; c < MERL_CHANNELS; c++)

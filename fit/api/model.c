@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/api/api.h"
 #include "src/energy.h"
+#include "src/halfdiff.h"
 #include <math.h>
 
 /* Beyond these nothing is promised of F, and of the fits' factors. */
@@ -47,6 +48,14 @@ enum stdfit_status api_model(const struct stdfit_model *model, const struct stdf
 	return status;
 }
 
+enum stdfit_status api_isotropic(const struct ndf *ndf, struct stdfit_error *error)
+{
+	if (ndf->sigma_x != ndf->sigma_y)
+		return api_fail(error, STATUS_DOMAIN, "expected an isotropic NDF: sigma_x is %g and sigma_y %g",
+				ndf->sigma_x, ndf->sigma_y);
+	return STDFIT_OK;
+}
+
 enum stdfit_status stdfit_model_evaluate(const struct stdfit_model *model, const stdfit_ndf *ndf, size_t n,
 					 const double *wi, const double *wo, double *f, struct stdfit_error *error)
 {
@@ -75,11 +84,22 @@ enum stdfit_status stdfit_model_albedo(const struct stdfit_model *model, const s
 	if (!albedo || !(cos_i >= 0 && cos_i <= 1))
 		return api_fail(error, STATUS_DOMAIN, "expected cos_i in [0, 1] and room for the albedo, found %g",
 				cos_i);
-	if (inner.ndf.sigma_x != inner.ndf.sigma_y)
-		return api_fail(error, STATUS_DOMAIN,
-				"the albedo is that of an isotropic NDF: sigma_x is %g and sigma_y %g",
-				inner.ndf.sigma_x, inner.ndf.sigma_y);
-	return api_end(error, energy_albedo(&inner, cos_i, albedo), NULL);
+	const enum stdfit_status isotropic = api_isotropic(&inner.ndf, error);
+
+	return isotropic == STDFIT_OK ? api_end(error, energy_albedo(&inner, cos_i, albedo), NULL) : isotropic;
+}
+
+enum stdfit_status stdfit_model_albedo_max(const struct stdfit_model *model, const stdfit_ndf *ndf, double albedo[3],
+					   double *theta_i, struct stdfit_error *error)
+{
+	struct cook_torrance inner;
+	enum stdfit_status status = api_model(model, ndf, &inner, error);
+
+	if (status == STDFIT_OK && (!albedo || !theta_i))
+		status = api_fail(error, STATUS_DOMAIN, "albedo or theta_i is NULL");
+	if (status == STDFIT_OK)
+		status = api_isotropic(&inner.ndf, error);
+	return status == STDFIT_OK ? api_end(error, energy_albedo_max(&inner, albedo, theta_i), NULL) : status;
 }
 
 enum stdfit_status stdfit_fresnel(const char *fresnel, double cos_d, double n, double k, double *F,
@@ -96,4 +116,46 @@ enum stdfit_status stdfit_fresnel(const char *fresnel, double cos_d, double n, d
 		return api_fail(error, STATUS_DOMAIN, "expected cos_d in [0, 1] and room for F, found %g", cos_d);
 	*F = fresnel_F(form, cos_d, n, k);
 	return STDFIT_OK;
+}
+
+enum stdfit_status stdfit_angles_to_directions(size_t n, const double *angles, double *wi, double *wo,
+					       struct stdfit_error *error)
+{
+	if (n > 0 && (!angles || !wi || !wo))
+		return api_fail(error, STATUS_DOMAIN, "angles, wi or wo is NULL");
+	for (size_t i = 0; i < n; i++) {
+		const double *a = angles + 3 * i;
+
+		if (!(a[0] >= 0 && a[0] <= M_PI / 2 && a[1] >= 0 && a[1] <= M_PI / 2 && fabs(a[2]) <= 2 * M_PI))
+			return api_fail(
+				error, STATUS_DOMAIN,
+				"expected theta_h, theta_d in [0, pi/2], phi_d in [-2 pi, 2 pi], found %g, %g, %g",
+				a[0], a[1], a[2]);
+	}
+	for (size_t i = 0; i < n; i++) {
+		const double *a = angles + 3 * i;
+		struct vec3 to_light, to_viewer;
+
+		halfdiff_to_dirs((struct halfdiff){a[0], a[1], a[2]}, &to_light, &to_viewer);
+		api_put(wi + 3 * i, to_light);
+		api_put(wo + 3 * i, to_viewer);
+	}
+	return STDFIT_OK;
+}
+
+enum stdfit_status stdfit_angles_from_directions(size_t n, const double *wi, const double *wo, double *angles,
+						 struct stdfit_error *error)
+{
+	enum stdfit_status status = api_directions("wi", n, wi, error);
+
+	if (status == STDFIT_OK)
+		status = api_directions("wo", n, wo, error);
+	if (status == STDFIT_OK && n > 0 && !angles)
+		status = api_fail(error, STATUS_DOMAIN, "angles is NULL");
+	for (size_t i = 0; i < n && status == STDFIT_OK; i++) {
+		const struct halfdiff a = halfdiff_from_dirs(api_vec(wi + 3 * i), api_vec(wo + 3 * i));
+
+		api_put(angles + 3 * i, (struct vec3){a.theta_h, a.theta_d, a.phi_d});
+	}
+	return status;
 }

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/api/api.h"
+#include "src/energy.h"
+#include "src/ndf_class.h"
 #include "src/ndf_slopes.h"
 #include "src/vndf.h"
 #include <math.h>
@@ -30,13 +32,18 @@ static enum stdfit_status init_class(struct stdfit_ndf *ndf, const char *name, d
 	enum lambda_form form = LAMBDA_EXACT;
 
 	if (!class || ndf_is_tabulated(class))
-		return api_fail(error, STATUS_DOMAIN, "ndf: there is none with parameters called '%.100s'",
-				name ? name : "(NULL)");
+		return api_unknown(error, "ndf with parameters", name ? name : "(NULL)");
 	if (lambda && lambda_form_find(lambda, &form) != STATUS_OK)
 		return api_unknown(error, "lambda", lambda);
+	if (!(sigma_x >= NDF_SIGMA_MIN && sigma_x <= NDF_SIGMA_MAX && sigma_y >= NDF_SIGMA_MIN &&
+	      sigma_y <= NDF_SIGMA_MAX))
+		return api_fail(error, STATUS_DOMAIN, "expected sigma in [%g, %g], found %g, %g", NDF_SIGMA_MIN,
+				NDF_SIGMA_MAX, sigma_x, sigma_y);
+	if (class->isotropic && sigma_x != sigma_y)
+		return api_fail(error, STATUS_DOMAIN, "%s is isotropic: expected one sigma, found %g, %g", name,
+				sigma_x, sigma_y);
 	if (ndf_init(&ndf->ndf, class, sigma_x, sigma_y, gamma) != STATUS_OK)
-		return api_fail(error, STATUS_DOMAIN, "%s does not take sigma %g, %g and gamma %g", name, sigma_x,
-				sigma_y, gamma);
+		return api_fail(error, STATUS_DOMAIN, "gamma %g is outside the range of %s", gamma, name);
 	const enum status status = ndf_set_lambda_form(&ndf->ndf, form);
 
 	if (status != STATUS_OK)
@@ -55,6 +62,17 @@ enum stdfit_status stdfit_ndf_new(stdfit_ndf **ndf, const char *name, double sig
 	return give_up(ndf, init_class(*ndf, name, sigma_x, sigma_y, gamma, lambda, error));
 }
 
+static enum stdfit_status init_piecewise(struct pwl *pwl, int n_nodes, const double *theta, const double *Dx,
+					 const double *Dy, struct stdfit_error *error)
+{
+	const enum status status = pwl_init(pwl, n_nodes, theta, Dx, Dy);
+
+	if (status == STATUS_DOMAIN)
+		return api_fail(error, status,
+				"expected theta increasing from 0 to pi/2, and finite D >= 0 that are not all 0");
+	return api_end(error, status, NULL);
+}
+
 enum stdfit_status stdfit_ndf_new_piecewise(stdfit_ndf **ndf, int n_nodes, const double *theta, const double *Dx,
 					    const double *Dy, struct stdfit_error *error)
 {
@@ -68,7 +86,7 @@ enum stdfit_status stdfit_ndf_new_piecewise(stdfit_ndf **ndf, int n_nodes, const
 		status = api_fail(error, STATUS_DOMAIN, "expected theta, Dx and 2 .. %d nodes, found %d", PWL_NODES_MAX,
 				  n_nodes);
 	else
-		status = api_end(error, pwl_init(&(*ndf)->pwl, n_nodes, theta, Dx, Dy), NULL);
+		status = init_piecewise(&(*ndf)->pwl, n_nodes, theta, Dx, Dy, error);
 	if (status == STDFIT_OK)
 		ndf_from_pwl(&(*ndf)->ndf, &(*ndf)->pwl);
 	return give_up(ndf, status);
@@ -200,13 +218,6 @@ static enum stdfit_status check_numbers(size_t n, const double *u, const double 
 	return STDFIT_OK;
 }
 
-static void put(double *out, struct vec3 v)
-{
-	out[0] = v.x;
-	out[1] = v.y;
-	out[2] = v.z;
-}
-
 enum stdfit_status stdfit_ndf_sample(const stdfit_ndf *ndf, size_t n, const double *u, double *normals,
 				     struct stdfit_error *error)
 {
@@ -218,8 +229,9 @@ enum stdfit_status stdfit_ndf_sample(const stdfit_ndf *ndf, size_t n, const doub
 		return api_fail(error, STATUS_UNSUPPORTED, "an ellipsoid has samples of visible normals only");
 	status = check_numbers(n, u, normals, error);
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
-		put(normals + 3 * i, ndf->kind == API_NDF_PIECEWISE ? pwl_sample(&ndf->pwl, u[2 * i], u[2 * i + 1])
-								    : ndf_sample(&ndf->ndf, u[2 * i], u[2 * i + 1]));
+		api_put(normals + 3 * i, ndf->kind == API_NDF_PIECEWISE
+						 ? pwl_sample(&ndf->pwl, u[2 * i], u[2 * i + 1])
+						 : ndf_sample(&ndf->ndf, u[2 * i], u[2 * i + 1]));
 	return status;
 }
 
@@ -250,9 +262,10 @@ enum stdfit_status stdfit_ndf_sample_visible(const stdfit_ndf *ndf, const double
 				ndf_name(ndf->ndf.class));
 	status = check_numbers(n, u, normals, error);
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
-		put(normals + 3 * i, ndf->kind == API_NDF_ELLIPSOID
-					     ? ellipsoid_sample(&ndf->ellipsoid, api_vec(wi), u[2 * i], u[2 * i + 1])
-					     : vndf_sample(&ndf->ndf, api_vec(wi), u[2 * i], u[2 * i + 1]));
+		api_put(normals + 3 * i,
+			ndf->kind == API_NDF_ELLIPSOID
+				? ellipsoid_sample(&ndf->ellipsoid, api_vec(wi), u[2 * i], u[2 * i + 1])
+				: vndf_sample(&ndf->ndf, api_vec(wi), u[2 * i], u[2 * i + 1]));
 	return status;
 }
 
@@ -289,8 +302,8 @@ enum stdfit_status stdfit_ndf_weight(const stdfit_ndf *ndf, const char *gaf, con
 	if (status == STDFIT_OK && n > 0 && (!pdf || !weight))
 		status = api_fail(error, STATUS_DOMAIN, "pdf or weight is NULL");
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
-		if (!(pdf[i] > 0))
-			status = api_fail(error, STATUS_DOMAIN, "expected pdf above 0, found %g", pdf[i]);
+		if (!(pdf[i] > 0 && isfinite(pdf[i])))
+			status = api_fail(error, STATUS_DOMAIN, "expected a finite pdf above 0, found %g", pdf[i]);
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
 		weight[i] = vndf_weight(inner, form, api_vec(wi), api_vec(normals + 3 * i), pdf[i]);
 	return status;
@@ -341,4 +354,38 @@ enum stdfit_status stdfit_ndf_moment(const stdfit_ndf *ndf, double phi, int orde
 	if (ndf_moment(inner, phi, order, moment) != STATUS_OK)
 		return api_fail(error, STATUS_DOMAIN, "the moment of order %d does not exist", order);
 	return STDFIT_OK;
+}
+
+enum stdfit_status stdfit_ndf_excess_kurtosis(const stdfit_ndf *ndf, double *kurtosis, struct stdfit_error *error)
+{
+	const struct ndf *inner = NULL;
+	const enum stdfit_status status = api_class_ndf(ndf, &inner, error);
+
+	if (status != STDFIT_OK)
+		return status;
+	if (!kurtosis)
+		return api_fail(error, STATUS_DOMAIN, "kurtosis is NULL");
+	if (ndf->kind != API_NDF_CLASS)
+		return api_fail(error, STATUS_UNSUPPORTED, "a piecewise distribution has no kurtosis here");
+	if (ndf_excess_kurtosis(inner, kurtosis) != STATUS_OK)
+		return api_fail(error, STATUS_DOMAIN, "%s of gamma %g has no kurtosis", ndf_name(inner->class),
+				inner->gamma);
+	return STDFIT_OK;
+}
+
+enum stdfit_status stdfit_ndf_furnace(const stdfit_ndf *ndf, const char *gaf, double *balance,
+				      struct stdfit_error *error)
+{
+	struct stdfit_model mirror = stdfit_model_default();
+	struct cook_torrance inner;
+
+	mirror.gaf = gaf;
+	mirror.fresnel = "none";
+	enum stdfit_status status = api_model(&mirror, ndf, &inner, error);
+
+	if (status == STDFIT_OK && !balance)
+		status = api_fail(error, STATUS_DOMAIN, "balance is NULL");
+	if (status == STDFIT_OK)
+		status = api_isotropic(&inner.ndf, error);
+	return status == STDFIT_OK ? api_end(error, energy_furnace(&inner, balance), NULL) : status;
 }

@@ -19,6 +19,7 @@ enum {
 	X(BENCH, bench)                                                                                                \
 	X(EVAL, eval)                                                                                                  \
 	X(INFO, info)                                                                                                  \
+	X(CONVERT, convert)                                                                                            \
 	X(SYNTH, synth)                                                                                                \
 	X(EXPORT, export)                                                                                              \
 	X(NDF, ndf)                                                                                                    \

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/cli/files.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/messages.h"
 
@@ -10,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 static bool files_add(struct files *files, const char *path)
@@ -28,9 +30,7 @@ static bool files_add(struct files *files, const char *path)
 
 static bool is_material(const char *name)
 {
-	static const char suffix[] = ".binary";
-	const size_t length = strlen(name), n = sizeof suffix - 1;
-	return name[0] != '.' && length > n && !strcmp(name + length - n, suffix);
+	return name[0] != '.' && measurement_extension(name);
 }
 
 /* A file or directory by what it is, not by its name. */
@@ -106,7 +106,23 @@ struct walk {
 	const atomic_bool *cancel;
 	struct seen seen;
 	int problems; /* already reported; the walk goes on */
+	bool probing; /* only to see whether there is a file: ends with the first, and reports nothing */
 };
+
+/* Directories that a probe goes into at most. */
+enum { PROBED_MAX = 1000 };
+
+static bool is_over(const struct walk *walk)
+{
+	return *walk->cancel || (walk->probing && (walk->files->n || walk->seen.n > PROBED_MAX));
+}
+
+static void walk_problem(struct walk *walk, const char *path, const char *problem)
+{
+	walk->problems++;
+	if (!walk->probing)
+		cannot_read(path, problem);
+}
 
 static int name_order(const struct dirent **a, const struct dirent **b)
 {
@@ -140,13 +156,11 @@ static bool walk_entry(struct walk *walk, const char *path, const char *name)
 		const int is_new = walk->recursive ? seen_add(&walk->seen, &info) : 0;
 		return is_new > 0 ? walk_directory(walk, path) : is_new == 0;
 	}
-	if (is_material(name))
+	if (is_material(name) && measurement_is_known(path))
 		return files_add(walk->files, path);
 	/* It may be a directory, unless it is a link that leads nowhere. */
-	if (!known && errno != ENOENT && errno != ELOOP) {
-		cannot_read(path, strerror(errno));
-		walk->problems++;
-	}
+	if (!known && errno != ENOENT && errno != ELOOP)
+		walk_problem(walk, path, strerror(errno));
 	return true;
 }
 
@@ -155,19 +169,28 @@ static bool walk_directory(struct walk *walk, const char *path)
 	struct dirent **entry;
 	const int n = scandir(path, &entry, is_visible, name_order);
 	bool stored = true;
-	if (n < 0) {
-		cannot_read(path, strerror(errno));
-		walk->problems++;
-	}
+	if (n < 0)
+		walk_problem(walk, path, strerror(errno));
 	for (int i = 0; i < n; i++) {
-		char *below = stored && !*walk->cancel ? join(path, entry[i]->d_name) : NULL;
-		stored = stored && (*walk->cancel || (below && walk_entry(walk, below, entry[i]->d_name)));
+		char *below = stored && !is_over(walk) ? join(path, entry[i]->d_name) : NULL;
+		stored = stored && (is_over(walk) || (below && walk_entry(walk, below, entry[i]->d_name)));
 		free(below);
 		free(entry[i]);
 	}
 	if (n >= 0)
 		free(entry);
 	return stored;
+}
+
+/* Whether there are files in the directories below. */
+static bool has_files_below(const char *path, const struct stat *info, const atomic_bool *cancel)
+{
+	struct files files = {0};
+	struct walk walk = {.files = &files, .recursive = true, .cancel = cancel, .probing = true};
+	const bool found = seen_add(&walk.seen, info) >= 0 && walk_directory(&walk, path) && files.n;
+	free(walk.seen.entry);
+	files_free(&files);
+	return found;
 }
 
 /* Returns how many problems there were; -1 when out of memory. */
@@ -179,8 +202,10 @@ static int add_directory(struct files *files, const char *path, const struct sta
 	const bool stored = seen_add(&walk.seen, info) >= 0 && walk_directory(&walk, path);
 	free(walk.seen.entry);
 	if (stored && !walk.problems && files->n == before && !*cancel) {
-		cannot_read(path, "no *.binary in this directory");
-		walk.problems++;
+		const bool below = !recursive && has_files_below(path, info, cancel);
+		walk_problem(&walk, path,
+			     below ? "no measurement in this directory itself: -r takes those in the directories below"
+				   : "no measurement of a known format in this directory");
 	}
 	return stored ? walk.problems : -1;
 }
@@ -303,16 +328,4 @@ bool files_same(const char *a, const char *b)
 	char in_a[PATH_MAX], in_b[PATH_MAX];
 	return !strcmp(split(a, in_a), split(b, in_b)) && find_id(in_a, &x, &regular) && find_id(in_b, &y, &regular) &&
 	       !id_order(&x, &y);
-}
-
-bool files_has(const struct files *files, const char *path)
-{
-	struct id file, other;
-	bool regular;
-	if (!find_id(path, &file, &regular) || !regular)
-		return false;
-	for (size_t i = 0; i < files->n; i++)
-		if (find_id(files->path[i], &other, &regular) && !id_order(&file, &other))
-			return true;
-	return false;
 }

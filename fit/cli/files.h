@@ -13,7 +13,7 @@ struct files {
 };
 
 /* files_collect - the files that the paths stand for. A path that is not a directory stands for itself; a directory for
- * its *.binary in the order of their names, with `recursive` also for those in the directories below, each of which is
+ * the measurements in it (measurement_is_known()) in the order of their names, with `recursive` also for those in the directories below, each of which is
  * read once, however many links lead to it. Hidden files and directories are skipped. A directory that cannot be read is
  * reported on standard error, and the collection goes on. Setting *cancel ends it with what was found so far.
  * Returns how many of the paths gave nothing or not all, each reported; -1 when out of memory, reported as well. */
@@ -22,8 +22,6 @@ void files_free(struct files *files);
 
 /* files_same - whether two names are one regular file, or would be one once written. */
 bool files_same(const char *a, const char *b);
-/* files_has - whether `path` is one of the files, by whatever name. */
-bool files_has(const struct files *files, const char *path);
 
 /* files_sort - puts them in the order of their bytes, whatever the locale and the command line's order. */
 void files_sort(struct files *files);

@@ -18,6 +18,7 @@
 #define INFO (1u << COMMAND_INFO)
 #define SYNTH (1u << COMMAND_SYNTH)
 #define EXPORT (1u << COMMAND_EXPORT)
+#define CONVERT (1u << COMMAND_CONVERT)
 #define NDF (1u << COMMAND_NDF)
 #define SAMPLE (1u << COMMAND_SAMPLE)
 #define PLOT (1u << COMMAND_PLOT)
@@ -33,12 +34,13 @@
 
 const struct option_spec option_specs[] = {
 	{"output", 'o', KIND_TEXT, FIT, NOT_RECORDED, "FILE",
-	 "write the table there; an older FILE becomes FILE~, with --resume only if it has rows to redo", AT(output), 0,
-	 0},
+	 "write the table there, - for standard output; an older FILE becomes FILE~, with --resume only if it has rows "
+	 "to redo",
+	 AT(output), 0, 0},
 	{"output", 'o', KIND_TEXT, COMPARE | MERGE, NOT_RECORDED, "FILE",
-	 "write the table there; an older FILE becomes FILE~", AT(output), 0, 0},
-	{"output", 'o', KIND_TEXT, EXPORT, NOT_RECORDED, "FILE", "write it there, not to standard output", AT(output),
-	 0, 0},
+	 "write the table there, - for standard output; an older FILE becomes FILE~", AT(output), 0, 0},
+	{"output", 'o', KIND_TEXT, EXPORT, NOT_RECORDED, "FILE", "write it there, not to standard output (-)",
+	 AT(output), 0, 0},
 	{"format", 0, KIND_FORMAT, EXPORT, NOT_RECORDED, "NAME", "what to write", AT(format), 0, 0},
 	{"output", 'o', KIND_TEXT, DRAWS, NOT_RECORDED, "DIR", "the directory to write to; made if it is not there",
 	 AT(output), 0, 0},
@@ -54,9 +56,9 @@ const struct option_spec option_specs[] = {
 	{"recursive", 'r', KIND_ON, FITS | MERGE | RENDER, NOT_RECORDED, NULL,
 	 "directories: take the files below them too", AT(recursive), 0, 0},
 	{"quiet", 'q', KIND_ON, SEARCHES | RENDER, NOT_RECORDED, NULL, "no progress line, no summary", AT(quiet), 0, 0},
-	{"quiet", 'q', KIND_ON, EXPORT, NOT_RECORDED, NULL, "no words but errors", AT(quiet), 0, 0},
-	{"threads", 0, KIND_INT, SEARCHES | MODEL | SOURCES, NOT_RECORDED, "N", "threads; changes no result",
-	 AT(fit.threads), 1, 1024},
+	{"quiet", 'q', KIND_ON, EXPORT | CONVERT, NOT_RECORDED, NULL, "no words but errors", AT(quiet), 0, 0},
+	{"threads", 0, KIND_INT, SEARCHES | MODEL | SOURCES | CONVERT, NOT_RECORDED, "N", "threads; changes no result",
+	 AT(fit.threads), 1, FIT_THREADS_MAX},
 	{"ndf", 0, KIND_NDFS, FITS | RENDER, RECORDED_WITHIN, "LIST", "NDFs to fit, separated by commas", AT(fit.ndf),
 	 0, 0},
 	{"ndf", 0, KIND_NDFS, MODEL | BENCH | EXPORT, NOT_RECORDED, "NAME", "NDF of the model", AT(fit.ndf), 0, 0},
@@ -68,10 +70,19 @@ const struct option_spec option_specs[] = {
 	 0},
 	{"weight", 0, KIND_WEIGHT, SEARCHES | SOURCES, RECORDED, "NAME", "how an entry counts in the error",
 	 AT(fit.criterion.weight), 0, 0},
-	{"bins", 0, KIND_BINS, SEARCHES | MODEL | SOURCES | INFO, RECORDED, "NAME",
+	{"bins", 0, KIND_BINS, SEARCHES | MODEL | SOURCES | INFO | CONVERT, RECORDED, "NAME",
 	 "where the entries of a table stand", AT(fit.criterion.bins), 0, 0},
+	{"quantity", 0, KIND_QUANTITY, SEARCHES | EVAL | SOURCES | INFO | CONVERT, RECORDED_GIVEN, "NAME",
+	 "what the numbers of the file are, whatever it says: the BRDF (1/sr), times cos theta_o, or times pi",
+	 AT(quantity), 0, 0},
+	{"gamut", 0, KIND_GAMUT, SEARCHES | EVAL | SOURCES | INFO | CONVERT, RECORDED_GIVEN, "NAME",
+	 "a colour of a spectrum that has a negative part in linear sRGB: set that to 0, or leave the entry out",
+	 AT(gamut), 0, 0},
 	{"max-theta", 0, KIND_NUMBER, SEARCHES | EVAL | SOURCES, RECORDED, "DEG",
 	 "leave out entries whose theta_i or theta_o exceeds this", AT(fit.criterion.max_theta), 1, 90},
+	{"zero-is-missing", 0, KIND_ON, SEARCHES | EVAL | SOURCES, RECORDED_GIVEN, NULL,
+	 "leave out entries that are 0 in all channels: holes that were stored as 0 instead of -1",
+	 AT(fit.criterion.zero_is_missing), 0, 0},
 	{"unbounded", 0, KIND_ON, SEARCHES | SOURCES, RECORDED, NULL, "kd and ks may exceed 1", AT(fit.unbounded), 0,
 	 0},
 	{"no-diffuse", 0, KIND_OFF, SEARCHES | SOURCES, RECORDED, NULL, "kd = 0", AT(fit.diffuse), 0, 0},
@@ -127,7 +138,7 @@ const struct option_spec option_specs[] = {
 	 0, 0},
 	{"row", 0, KIND_INT, EVAL | SOURCES | NDF | SAMPLE, NOT_RECORDED, "N", "take row N of --from, counted from 1",
 	 AT(row), 1, INT_MAX},
-	{"phi", 0, KIND_PHI, SYNTH, NOT_RECORDED, "180|360", "entries along phi_d", AT(n_phi_d), 0, 0},
+	{"phi", 0, KIND_PHI, SYNTH | CONVERT, NOT_RECORDED, "180|360", "entries along phi_d", AT(n_phi_d), 0, 0},
 	{"noise", 0, KIND_NUMBER, SYNTH, NOT_RECORDED, "REL", "standard deviation of a factor 1 + noise on each value",
 	 AT(noise), 0, 10},
 	{"seed", 0, KIND_SEED, SYNTH, NOT_RECORDED, "N", "seed of the noise", AT(fit.seed), 0, 0},
@@ -151,8 +162,8 @@ const struct option_spec option_specs[] = {
 	{"pictures", 0, KIND_ON, COMPARE, NOT_RECORDED, NULL,
 	 "render each model and its measured table, too, and show delta E and SSIM of the pictures", AT(pictures), 0,
 	 0},
-	{"output", 'o', KIND_TEXT, RENDER, NOT_RECORDED, "FILE", "the picture: FILE.png (sRGB) or FILE.pfm (linear)",
-	 AT(picture), 0, 0},
+	{"output", 'o', KIND_TEXT, RENDER, NOT_RECORDED, "FILE",
+	 "the picture: FILE.png (sRGB) or FILE.pfm (linear), - for standard output", AT(picture), 0, 0},
 	{"environment", 'e', KIND_TEXT, RENDER | REPORT, NOT_RECORDED, "NAME",
 	 "studio, sky or lights, or a map of latitude and longitude, FILE.hdr or FILE.pfm (default: studio)",
 	 AT(environment), 0, 0},
@@ -193,6 +204,10 @@ const char *option_choice(enum option_kind kind, int i)
 		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
 	case KIND_BINS:
 		return i < BINS_COUNT ? bins_name((enum bins)i) : NULL;
+	case KIND_QUANTITY:
+		return i < QUANTITY_COUNT ? quantity_name((enum quantity)i) : NULL;
+	case KIND_GAMUT:
+		return i < GAMUT_COUNT ? gamut_name((enum gamut)i) : NULL;
 	case KIND_PHI:
 		return i < 2 ? (i ? "360" : "180") : NULL;
 	case KIND_SAMPLING:
@@ -218,6 +233,10 @@ static enum status choice_find(enum option_kind kind, const char *text, void *va
 		return fresnel_find(text, value);
 	case KIND_WEIGHT:
 		return weight_find(text, value);
+	case KIND_QUANTITY:
+		return quantity_find(text, value);
+	case KIND_GAMUT:
+		return gamut_find(text, value);
 	case KIND_SAMPLING:
 		return sampling_find(text, value);
 	case KIND_FORMAT:
@@ -482,6 +501,12 @@ void option_write(FILE *file, const struct options *options, const struct option
 		break;
 	case KIND_BINS:
 		fputs(bins_name(*(const enum bins *)value), file);
+		break;
+	case KIND_QUANTITY:
+		fputs(quantity_name(*(const enum quantity *)value), file);
+		break;
+	case KIND_GAMUT:
+		fputs(gamut_name(*(const enum gamut *)value), file);
 		break;
 	case KIND_SAMPLING:
 		fputs(sampling_name(*(const enum sampling *)value), file);

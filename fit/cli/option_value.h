@@ -26,6 +26,8 @@ enum option_kind {
 	KIND_FRESNEL,
 	KIND_WEIGHT,
 	KIND_BINS,
+	KIND_QUANTITY,
+	KIND_GAMUT,
 	KIND_FORMAT,
 	KIND_SAMPLING,
 	KIND_ALGORITHM,
@@ -37,6 +39,7 @@ enum recorded {
 	NOT_RECORDED,
 	RECORDED,
 	RECORDED_WITHIN,    /* only with --within */
+	RECORDED_GIVEN,     /* only where given */
 	RECORDED_ALGORITHM, /* only with another algorithm than the default */
 };
 

@@ -4,6 +4,7 @@
 #include "fit/cli/files.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/option_value.h"
+#include "fit/cli/outputs.h"
 #include "fit/cli/report.h"
 #include "fit/cli/text_stream.h"
 #include "fit/error/objective.h"
@@ -16,13 +17,14 @@
 #include <unistd.h>
 
 static const struct command_text commands[COMMAND_COUNT] = {
-	[COMMAND_FIT] = {"fit", "PATH...", "fit MERL files",
-			 "Fits a Cook-Torrance model with each NDF to each MERL file. A directory stands for\n"
-			 "every *.binary in it. A terminal shows a readable table, a pipe gets CSV. With -o, rows\n"
+	[COMMAND_FIT] = {"fit", "PATH...", "fit measurements",
+			 "Fits a Cook-Torrance model with each NDF to each measurement. A directory stands for\n"
+			 "every file of a known format in it. A terminal shows a readable table, a pipe gets CSV. With "
+			 "-o, rows\n"
 			 "are appended as files are done and put in order at the end, so that Ctrl-C or a kill\n"
 			 "loses nothing that was done; --resume goes on from there.\n"},
 	[COMMAND_COMPARE] = {"compare", "PATH...", "errors of the NDFs side by side, per material and in all",
-			     "Fits MERL files or directories, or takes one result table (FILE.csv) as it is. Shows\n"
+			     "Fits measurements or directories, or takes one result table (FILE.csv) as it is. Shows\n"
 			     "the error of each NDF, the winner, by how much STD's error is lower than GGX's and\n"
 			     "Beckmann's (in % of theirs), then mean, median, worst and wins.\n"},
 	[COMMAND_MERGE] = {"merge", "CSV... [PATH...]", "join the tables of a batch's shares (fit --shard) into one",
@@ -34,7 +36,7 @@ static const struct command_text commands[COMMAND_COUNT] = {
 			   "may stand in several tables; the seconds are those of the first. Failed rows stay.\n"},
 	[COMMAND_BENCH] =
 		{"bench", "FILE", "error against run time, the default search beside others",
-		 "Fits one NDF to one MERL file, read already, with one algorithm after the other, each alone\n"
+		 "Fits one NDF to one measurement, read already, with one algorithm after the other, each alone\n"
 		 "on all threads, and shows the error that each had reached after 0.1, 0.3, 1, 3 and 10 s, at\n"
 		 "the end of --time, and the shapes it had evaluated. Every error is that of the full table:\n"
 		 "shapes that the default search judged by a sample of the table are judged anew afterwards.\n"
@@ -44,12 +46,13 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "parameters with the exact Lambda, and what the search took. integer and half-integer fit\n"
 		 "every gamma they have; where a form does not take a fixed --gamma, its row is empty.\n"},
 	[COMMAND_EVAL] = {"eval", "FILE", "error of given parameters, no fit",
-			  "Measures how far a model is from a MERL file, under every weight and metric. The model\n"
+			  "Measures how far a model is from a measurement, under every weight and metric. The model\n"
 			  "comes from options, or from rows of a result table (--from), which also bring their\n"
 			  "G, Fresnel term, bins and largest theta.\n"},
-	[COMMAND_INFO] = {"info", "FILE...", "what is in a MERL file: validity, ranges, suspects",
-			  "Shows size, hash, valid, negative and non-finite entries, and the range of the valid\n"
-			  "values above the horizon per channel (1/sr).\n"},
+	[COMMAND_INFO] = {"info", "FILE...", "what is in a measurement: format, validity, ranges, suspects",
+			  "Shows size, hash, valid, negative and non-finite entries, the range of the valid values\n"
+			  "above the horizon per channel (1/sr), the directional albedo of the data at 0, 30 and 60\n"
+			  "degrees with the share of the hemisphere that is measured, and what looks wrong.\n"},
 	[COMMAND_EXPORT] =
 		{"export", "[FILE]", "a model for another program: BRDF Explorer, Mitsuba 3, pbrt-v4, glTF, ...",
 		 "Writes one model: fitted to FILE, from the row of FILE's material in a result table, from\n"
@@ -69,6 +72,11 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "Draws normals m, visible or all, with their density. With --theta-i also the direction wo into\n"
 		 "which each reflects, its density, and its weight: the mean of the weights is the directional\n"
 		 "albedo of the lobe without its Fresnel term.\n"},
+	[COMMAND_CONVERT] =
+		{"convert", "IN OUT", "a measurement as CSV of samples or as a MERL file",
+		 "Writes a measurement of any format as OUT.csv, samples in linear sRGB or gray with the solid angle\n"
+		 "that each stands for, or as OUT.binary, a MERL file: interpolated, -1 where nothing was measured,\n"
+		 "with the mean of both orders of wi and wo unless --phi 360. One line tells what was lost.\n"},
 	[COMMAND_SYNTH] = {"synth", "OUT.binary", "write a MERL file of a model",
 			   "Writes the table that an ideal measurement of the model would give; -1 below the\n"
 			   "horizon.\n"},
@@ -81,16 +89,17 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "values, delta_e the mean CIEDE2000, ssim the structural similarity.\n"},
 	[COMMAND_PLOT] =
 		{"plot", "PATH...", "fits, or the course of searches, as plots by gnuplot",
-		 "Takes a result table (FILE.csv), or fits MERL files or directories. Writes into the directory\n"
+		 "Takes a result table (FILE.csv), or fits measurements or directories. Writes into the directory\n"
 		 "of -o the errors of all materials, sorted; and per material D and G1 of each fit against the\n"
 		 "NDF read off the data, slices, measured against fitted, and the error over theta_h and\n"
 		 "theta_d: each as PNG, SVG, CSV and the script that draws it. Of a trace (see fit --trace) it\n"
 		 "draws the error against time.\n"},
 	[COMMAND_REPORT] =
 		{"report", "PATH...", "fits as one HTML page that needs no other file",
-		 "Takes a result table (FILE.csv), or fits MERL files or directories. Writes index.html into the\n"
+		 "Takes a result table (FILE.csv), or fits measurements or directories. Writes index.html into the\n"
 		 "directory of -o: a summary, a table that can be sorted, and per material its spheres (see\n"
-		 "stdfit render), plots (see stdfit plot), parameters, their certainty, options and versions.\n"},
+		 "stdfit render), plots (see stdfit plot), parameters, their certainty, options and versions.\n"
+		 "Of more than 150 materials each has a page of its own, in materials/ beside index.html.\n"},
 };
 
 const struct command_text *options_command(enum command command)
@@ -105,11 +114,18 @@ static bool is_recorded(const struct options *options, const struct option_spec 
 		return true;
 	case RECORDED_WITHIN:
 		return !isnan(options->within);
+	case RECORDED_GIVEN:
+		return options->given[spec - option_specs];
 	case RECORDED_ALGORITHM:
 		return options->fit.algorithm;
 	default:
 		return false;
 	}
+}
+
+struct read_options options_reading(const struct options *options, int threads)
+{
+	return (struct read_options){.threads = threads, .quantity = options->quantity, .gamut = options->gamut};
 }
 
 char *options_text(const struct options *options)
@@ -333,22 +349,22 @@ int options_check_fit(const struct options *options)
 	return -1;
 }
 
-/* An output must not replace an input or the other output. compare and merge keep the table that they replace beside it.
- * fit and compare check the files of a directory themselves. */
-static int check_outputs(const struct options *options)
+/* -o - and -o /dev/stdout of a command that writes to standard output anyway: as without -o, but CSV on a terminal, too. */
+static int find_standard_output(struct options *options)
 {
-	const char *const output[] = {options->output, options->trace};
-	const bool keeps = options->command == COMMAND_COMPARE || options->command == COMMAND_MERGE;
-	for (int o = 0; o < 2; o++) {
-		bool read = output[o] && options->from && files_same(options->from, output[o]);
-		for (int i = 0; i < options->n_paths && output[o]; i++)
-			read |= files_same(options->path[i], output[o]) && !(keeps && csv_is_name(options->path[i]));
-		if (read)
-			return options_usage(options->command, "--%s names a file that is to be read",
-					     o ? "trace" : "output");
-	}
-	if (options->output && options->trace && files_same(options->output, options->trace))
-		return options_usage(options->command, "--trace and --output name the same file");
+	const enum command command = options->command;
+	const bool standard = options->output && outputs_standard(options->output);
+	if (options->trace && outputs_standard(options->trace) && (standard || !options->output))
+		return options_usage(command, "--trace on standard output needs -o FILE");
+	if (!standard)
+		return -1;
+	if (command == COMMAND_PLOT || command == COMMAND_REPORT)
+		return options_usage(command, "expected -o DIR, a directory: there are several files to write");
+	if (options->resume)
+		return options_usage(command, "--resume needs -o FILE, not standard output");
+	options->to_standard_output = true;
+	if (command != COMMAND_EXPORT || options->format != EXPORT_MERL)
+		options->output = NULL;
 	return -1;
 }
 
@@ -380,8 +396,10 @@ int options_parse(struct options *options, enum command command, int argc, char 
 	if (!options->n_paths && commands[command].arguments[0] != '[')
 		return options_usage(command, "expected %s, found nothing", commands[command].arguments);
 	const bool fits = command == COMMAND_FIT || command == COMMAND_COMPARE || command == COMMAND_BENCH;
-	const int wrong = fits ? options_check_fit(options) : -1;
-	return wrong >= 0 ? wrong : check_outputs(options);
+	int wrong = find_standard_output(options);
+	if (wrong < 0 && fits)
+		wrong = options_check_fit(options);
+	return wrong >= 0 ? wrong : outputs_check(options, NULL, 0);
 }
 
 bool options_given(const struct options *options, const char *name)
@@ -453,7 +471,7 @@ enum show options_show(const struct options *options)
 {
 	if (options->json && !options->output)
 		return SHOW_JSON;
-	if (options->readable || isatty(STDOUT_FILENO))
+	if (options->readable || (isatty(STDOUT_FILENO) && !options->to_standard_output))
 		return SHOW_READABLE;
 	return options->output ? SHOW_NOTHING : SHOW_CSV;
 }

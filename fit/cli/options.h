@@ -3,6 +3,7 @@
 #ifndef OPTIONS_H
 #define OPTIONS_H
 
+#include "data_readers/quantity.h"
 #include "fit/cli/command.h"
 #include "fit/cli/distribution.h"
 #include "fit/cli/files.h"
@@ -17,9 +18,12 @@ enum { OPTIONS_MAX = 128 }; /* rows of the option table, at most */
 struct options {
 	struct fit_options fit;
 	enum command command;
-	const char *output; /* NULL: standard output */
-	const char *trace;  /* a CSV of the course of each search; NULL: none */
-	struct shard shard; /* .n = 0: all files */
+	enum quantity quantity; /* of a file that may have another than it says */
+	enum gamut gamut;
+	const char *output;      /* NULL: standard output */
+	bool to_standard_output; /* which was asked for by a name, as in -o - */
+	const char *trace;       /* a CSV of the course of each search; NULL: none */
+	struct shard shard;      /* .n = 0: all files */
 	bool json, quiet, resume, recursive, readable;
 	double within; /* percent; NaN: every NDF as it is */
 	/* A model, for eval and synth; its sigma, gamma and ior are those of `fit`. */
@@ -64,6 +68,9 @@ bool options_given(const struct options *options, const char *name);
  */
 const char *options_given_beside(const struct options *options, const char *const *expected);
 
+/* options_reading - how the command reads a measurement. */
+struct read_options options_reading(const struct options *options, int threads);
+
 /* options_text - newly allocated: every option that changes a result, in a fixed order, defaults included.
  * NULL when out of memory. */
 char *options_text(const struct options *options);
@@ -76,7 +83,7 @@ MUST_CHECK int options_model(const struct options *options, struct cook_torrance
 MUST_CHECK int options_check_fit(const struct options *options);
 
 /* options_show - what a command prints on standard output: JSON if asked for, readable text if asked for or on a
- * terminal, else CSV. With -o only a terminal or --table gets anything. */
+ * terminal, else CSV. With -o only a terminal or --table gets anything; -o - is CSV unless --table asks for text. */
 enum show options_show(const struct options *options);
 
 /* options_end - ends a command that makes one table: prints the table as options_show() says, `readable` printing the

@@ -13,13 +13,14 @@ static void json_string(FILE *file, const char *text)
 {
 	fputc('"', file);
 	while (*text) {
-		const size_t length = text_printable(text);
+		uint32_t code;
+		const size_t length = text_character(text, &code);
 		if (*text == '"' || *text == '\\')
 			fprintf(file, "\\%c", *text);
-		else if (length)
+		else if (text_printable(text))
 			fwrite(text, 1, length, file);
 		else
-			fprintf(file, "\\u%04x", *text > 0 ? (unsigned)*text : 0xfffdu);
+			fprintf(file, "\\u%04x", length ? (unsigned)code : 0xfffdu);
 		text += length ? length : 1;
 	}
 	fputc('"', file);
@@ -91,7 +92,7 @@ void report_table(FILE *file, const struct csv_table *table)
 	int *width = calloc((size_t)table->n_columns, sizeof(*width));
 	char text[SHOWN_SIZE];
 	for (int c = 0; c < table->n_columns && width; c++) {
-		width[c] = text_width(table->column[c].name);
+		width[c] = text_width(shown_cell(text, table->column[c].name, false));
 		for (size_t i = 0; i < table->n_rows; i++) {
 			const int needed = text_width(shown_cell(text, table->row[i][c], table->column[c].number));
 			width[c] = needed > width[c] ? needed : width[c];
@@ -100,7 +101,8 @@ void report_table(FILE *file, const struct csv_table *table)
 	for (size_t i = 0; i <= table->n_rows; i++) {
 		for (int c = 0; c < table->n_columns; c++) {
 			const struct csv_column *column = &table->column[c];
-			const char *cell = i ? shown_cell(text, table->row[i - 1][c], column->number) : column->name;
+			const char *cell = i ? shown_cell(text, table->row[i - 1][c], column->number)
+					     : shown_cell(text, column->name, false);
 			fputs(c ? "  " : "", file);
 			print_padded(file, cell, width ? width[c] : 0, column->number);
 		}
@@ -168,7 +170,9 @@ static void print_fit(FILE *file, char *const *row)
 	char text[SHOWN_SIZE];
 	text_quote(row[RESULT_MATERIAL], text, sizeof text);
 	print_padded(file, text, 22, false);
-	fprintf(file, "  %-8s", row[RESULT_NDF]);
+	fputs("  ", file);
+	text_quote(row[RESULT_NDF], text, sizeof text);
+	print_padded(file, text, 8, false);
 	if (result_failed(row)) {
 		text_quote(row[RESULT_STATUS], text, sizeof text);
 		fprintf(file, "  %s\n", text);
@@ -181,7 +185,8 @@ static void print_fit(FILE *file, char *const *row)
 	}
 	fprintf(file, "  %-20s", rgb_text(text, row, RESULT_KD_R));
 	fprintf(file, "  %-20s", rgb_text(text, row, RESULT_KS_R));
-	fprintf(file, "%s%s", *row[RESULT_AT_BOUND] ? "  " : "", row[RESULT_AT_BOUND]);
+	text_quote(row[RESULT_AT_BOUND], text, sizeof text);
+	fprintf(file, "%s%s", *text ? "  " : "", text);
 	print_remark(file, row[RESULT_STATUS]);
 	if (!strcmp(row[RESULT_ENERGY], "gain"))
 		fputs("  (sends back more light than it gets)", file);

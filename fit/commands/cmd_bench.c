@@ -2,7 +2,7 @@
 /* stdfit bench - error against run time: the default search beside others, on one material; or, with --forms, the forms
  * of Lambda beside each other. */
 #include "data_readers/atomic_file.h"
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/options.h"
 #include "fit/cli/report.h"
@@ -165,7 +165,8 @@ static enum status run_algorithm(struct bench *b, const struct algorithm *algori
 static enum status read_file(struct bench *b)
 {
 	const struct options *options = b->options;
-	enum status status = merl_read(options->path[0], options->fit.threads, &b->measurement, &b->error);
+	const struct read_options reading = options_reading(options, options->fit.threads);
+	enum status status = measurement_read(options->path[0], &reading, &b->measurement, &b->error);
 	if (status != STATUS_OK)
 		return status;
 	b->material = result_material(options->path[0]);

@@ -2,9 +2,11 @@
 /* stdfit compare - the NDFs side by side: errors per material, and what they come to in all. */
 #include "data_readers/text_quote.h"
 #include "fit/cli/messages.h"
+#include "fit/cli/outputs.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
 #include "fit/results/compare.h"
+#include "fit/results/contradiction.h"
 #include "fit/results/store.h"
 #include "fit/sources/batch.h"
 #include "fit/sources/row_pictures.h"
@@ -90,7 +92,7 @@ static int compare(const struct options *options, struct csv_table *rows)
 	return status != STATUS_OK || light.n_failed ? EXIT_FAILED : EXIT_DONE;
 }
 
-/* Rows that can be compared were made with the same options. */
+/* Rows that can be compared were made with the same options, and one fit has one result. */
 static enum status check_rows(const struct csv_table *rows, const char *path, struct error *error)
 {
 	char name[TEXT_QUOTE_SIZE];
@@ -101,7 +103,7 @@ static enum status check_rows(const struct csv_table *rows, const char *path, st
 		if (strcmp(rows->row[0][RESULT_OPTIONS], rows->row[i][RESULT_OPTIONS]))
 			return error_set(error, STATUS_FORMAT, "'%s' row %zu: made with other options than row 1", name,
 					 i + 1);
-	return STATUS_OK;
+	return contradiction_check(rows, path, error);
 }
 
 static int compare_table(const struct options *options)
@@ -122,7 +124,11 @@ static int compare_table(const struct options *options)
 		status = check_rows(&rows, path, &error);
 	if (status != STATUS_OK)
 		report_error("%s", error.text);
-	const int code = status != STATUS_OK ? EXIT_FAILED : compare(options, &rows);
+	int code = status != STATUS_OK ? EXIT_FAILED : -1;
+	if (code < 0 && options->pictures)
+		code = outputs_check_rows(options, &rows);
+	if (code < 0)
+		code = compare(options, &rows);
 	csv_table_free(&rows);
 	return code;
 }
@@ -135,12 +141,10 @@ static int compare_fits(const struct options *options)
 	struct error error = {""};
 	struct csv_table rows = csv_table_make(result_columns, RESULT_COLUMNS);
 	const int bad = files_collect(&files, options->path, options->n_paths, options->recursive, options->cancel);
-	const bool replaces = bad >= 0 && options->output && files_has(&files, options->output);
-	if (replaces)
-		options_usage(COMMAND_COMPARE, "--output names a file that is to be read");
-	if (bad < 0 || replaces || batch_init(&batch, options, &files) != STATUS_OK) {
+	const int wrong = bad < 0 ? EXIT_FAILED : outputs_check(options, files.path, files.n);
+	if (wrong >= 0 || batch_init(&batch, options, &files) != STATUS_OK) {
 		files_free(&files);
-		return replaces ? EXIT_USAGE : EXIT_FAILED;
+		return wrong >= 0 ? wrong : EXIT_FAILED;
 	}
 	enum status status = options->output ? store_probe(options->output, &error) : STATUS_OK;
 	int code = *options->cancel                 ? EXIT_INTERRUPTED

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit eval - how far given models are from a MERL file. */
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
@@ -71,7 +71,8 @@ static enum status evaluate(struct evaluation *e, const struct source_model *sou
 static enum status evaluate_all(struct evaluation *e, const struct options *options, struct error *error)
 {
 	struct model_source source;
-	enum status status = merl_read(e->path, options->fit.threads, &e->measurement, error);
+	const struct read_options reading = options_reading(options, options->fit.threads);
+	enum status status = measurement_read(e->path, &reading, &e->measurement, error);
 	if (status == STATUS_OK)
 		status = model_source_read(options, e->path, &source, error);
 	if (status != STATUS_OK)

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit export - a model in the form of another program. */
 #include "data_readers/atomic_file.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/merl.h"
 #include "fit/cli/messages.h"
+#include "fit/cli/outputs.h"
 #include "fit/commands/commands.h"
 #include "fit/sources/model_source.h"
 
@@ -38,7 +40,7 @@ static enum status find_samples(const struct options *options, const struct sour
 	*found = measurement->value[0] ? path : NULL;
 	if (*found || !path || !export_wants_samples(options->format, &model->model))
 		return STATUS_OK;
-	const enum status status = merl_read(path, options->fit.threads, measurement, error);
+	const enum status status = measurement_read(path, &model->reading, measurement, error);
 	if (status != STATUS_OK)
 		return status == STATUS_NO_MEMORY ? status : STATUS_OK;
 	if (options->n_paths || result_is_input(model->input, measurement))
@@ -127,7 +129,8 @@ static enum status write_model(const struct options *options, const struct sourc
 	return status;
 }
 
-static enum status run(const struct options *options, struct error *error)
+/* *wrong: the exit code of a command line that names the row's file as output; that is reported. */
+static enum status run(const struct options *options, int *wrong, struct error *error)
 {
 	struct model_source source;
 	enum status status = model_source_read(options, options->n_paths ? options->path[0] : NULL, &source, error);
@@ -136,7 +139,9 @@ static enum status run(const struct options *options, struct error *error)
 	if (source.n > 1)
 		status =
 			error_set(error, STATUS_FORMAT, "%zu rows are meant: choose one with --ndf or --row", source.n);
-	else
+	else if (source.model[0].path)
+		*wrong = outputs_check(options, &source.model[0].path, 1);
+	if (status == STATUS_OK && *wrong < 0)
 		status = write_model(options, &source.model[0], &source.measurement, error);
 	model_source_free(&source);
 	return status;
@@ -151,7 +156,9 @@ int cmd_export(int argc, char **argv, atomic_bool *cancel)
 		code = check(&options);
 	if (code >= 0)
 		return code;
-	const enum status status = run(&options, &error);
+	const enum status status = run(&options, &code, &error);
+	if (code >= 0)
+		return code;
 	if (*cancel || status == STATUS_INTERRUPTED)
 		return EXIT_INTERRUPTED;
 	if (status != STATUS_OK)

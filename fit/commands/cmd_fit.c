@@ -3,6 +3,7 @@
 #include "data_readers/atomic_file.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/messages.h"
+#include "fit/cli/outputs.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
 #include "fit/sources/batch.h"
@@ -97,6 +98,8 @@ static int run(struct sink *sink, struct batch *batch)
 	}
 	if (sink->stored)
 		batch->store = &sink->store;
+	if (sink->stored && *sink->store.doubt.text)
+		report_error("%s", sink->store.doubt.text);
 	if (sink->show == SHOW_CSV)
 		csv_write_header(stdout, result_columns, RESULT_COLUMNS);
 	batch->done = file_done;
@@ -173,17 +176,6 @@ static int collect(const struct options *options, struct files *files)
 	return bad;
 }
 
-/* An output replaces an older file, but no input. Returns -1 or EXIT_USAGE. */
-static int check_outputs(const struct options *options, const struct files *files)
-{
-	const char *const output[] = {options->output, options->trace};
-	for (size_t i = 0; i < sizeof output / sizeof *output; i++)
-		if (output[i] && files_has(files, output[i]))
-			return options_usage(COMMAND_FIT, "--%s names a file that is to be read",
-					     i ? "trace" : "output");
-	return -1;
-}
-
 int cmd_fit(int argc, char **argv, atomic_bool *cancel)
 {
 	struct options options;
@@ -193,7 +185,7 @@ int cmd_fit(int argc, char **argv, atomic_bool *cancel)
 	struct files files;
 	const int bad = collect(&options, &files);
 	struct batch batch;
-	code = bad < 0 ? EXIT_FAILED : check_outputs(&options, &files);
+	code = bad < 0 ? EXIT_FAILED : outputs_check(&options, files.path, files.n);
 	if (options.shard.n && !bad)
 		files_keep_shard(&files, options.shard);
 	if (code >= 0 || batch_init(&batch, &options, &files) != STATUS_OK) {

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* stdfit info - what is in a MERL file. */
-#include "data_readers/merl.h"
+/* stdfit info - what is in the file of a measurement. */
+#include "data_readers/measurement_read.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/options.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
 #include "fit/error/census.h"
+#include "fit/error/suspects.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -22,8 +23,14 @@ enum info_column {
 	INFO_NONFINITE,
 	INFO_ABOVE,
 	INFO_VALID_ABOVE,
-	INFO_RANGE, /* min, median, max of red, green, blue */
-	INFO_SUSPECTS = INFO_RANGE + 9,
+	INFO_RANGE,                   /* min, median, max of red, green, blue */
+	INFO_ALBEDO = INFO_RANGE + 9, /* red, green, blue and the share measured, at 0, 30 and 60 degrees */
+	INFO_ENDS_AT = INFO_ALBEDO + 4 * SUSPECTS_ALBEDOS,
+	INFO_SUSPECTS,
+	INFO_FORMAT,
+	INFO_SYMMETRY,
+	INFO_CHANNELS,
+	INFO_LEFT_OUT,
 	INFO_COLUMNS
 };
 
@@ -48,10 +55,27 @@ static const struct csv_column columns[INFO_COLUMNS] = {
 	{"min_b", true},
 	{"median_b", true},
 	{"max_b", true},
+	[INFO_ALBEDO] = {"albedo_0_r", true},
+	{"albedo_0_g", true},
+	{"albedo_0_b", true},
+	{"measured_0", true},
+	{"albedo_30_r", true},
+	{"albedo_30_g", true},
+	{"albedo_30_b", true},
+	{"measured_30", true},
+	{"albedo_60_r", true},
+	{"albedo_60_g", true},
+	{"albedo_60_b", true},
+	{"measured_60", true},
+	[INFO_ENDS_AT] = {"ends_at", true},
 	[INFO_SUSPECTS] = {"suspects", false},
+	[INFO_FORMAT] = {"format", false},
+	[INFO_SYMMETRY] = {"symmetry", false},
+	[INFO_CHANNELS] = {"channels", true},
+	[INFO_LEFT_OUT] = {"left_out", false},
 };
 
-enum { SUSPECTS_SIZE = 256 };
+enum { SUSPECTS_SIZE = 256 + SUSPECTS_TEXT };
 
 static void add_count(char *text, const char *what, size_t n)
 {
@@ -61,8 +85,10 @@ static void add_count(char *text, const char *what, size_t n)
 }
 
 /* What a sound measurement does not have. */
-static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *measurement, const struct census *census)
+static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *measurement, const struct census *census,
+			   enum gamut gamut, const struct suspects *suspects)
 {
+	char explained[SUSPECTS_TEXT];
 	const bool zero = census->range[0].max <= 0 && census->range[1].max <= 0 && census->range[2].max <= 0;
 	snprintf(text, SUSPECTS_SIZE, "%s",
 		 !census->valid_above ? "no valid entry above the horizon"
@@ -71,16 +97,36 @@ static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *m
 	add_count(text, "masked above the horizon", census->above - census->valid_above);
 	add_count(text, "valid below the horizon", census->valid_below);
 	add_count(text, "non-finite", measurement->n_nonfinite);
+	if (gamut == GAMUT_CLIP)
+		add_count(text, "out of gamut, set to 0", measurement->n_out_of_gamut);
+	const size_t used = strlen(text);
+	if (suspects->found)
+		snprintf(text + used, SUSPECTS_SIZE - used, "%s%s", used ? "; " : "",
+			 suspects_explain(suspects, explained));
+}
+
+/* Which entries of the file are not among those that count, and why. */
+static void write_left_out(char text[SUSPECTS_SIZE], const struct measurement *measurement, enum gamut gamut)
+{
+	text[0] = '\0';
+	add_count(text, "negative", measurement->n_negative);
+	add_count(text, "non-finite", measurement->n_nonfinite);
+	add_count(text, "not measured", measurement->n_missing);
+	add_count(text, "at or below the horizon", measurement->n_below_horizon);
+	if (gamut == GAMUT_MASK)
+		add_count(text, "out of gamut", measurement->n_out_of_gamut);
 }
 
 static enum status add_file(struct csv_table *table, const char *path, const struct measurement *measurement,
-			    const struct census *census)
+			    const struct census *census, enum gamut gamut, const struct suspects *found)
 {
+	const struct scattered *scattered = measurement->scattered;
 	double number[INFO_COLUMNS] = {
 		[INFO_SIZE] = (double)measurement->file_size,
-		[INFO_N_THETA_H] = MERL_THETA_H,
-		[INFO_N_THETA_D] = MERL_THETA_D,
-		[INFO_N_PHI_D] = measurement->n_phi_d,
+		[INFO_N_THETA_H] = scattered ? (double)NAN : MERL_THETA_H,
+		[INFO_N_THETA_D] = scattered ? (double)NAN : MERL_THETA_D,
+		[INFO_N_PHI_D] = scattered ? (double)NAN : measurement->n_phi_d,
+		[INFO_CHANNELS] = scattered ? measurement->n_channels : MERL_CHANNELS,
 		[INFO_VALID] = (double)census->valid,
 		[INFO_NEGATIVE] = (double)measurement->n_negative,
 		[INFO_NONFINITE] = (double)measurement->n_nonfinite,
@@ -92,15 +138,26 @@ static enum status add_file(struct csv_table *table, const char *path, const str
 		number[INFO_RANGE + 3 * c + 1] = census->range[c].median;
 		number[INFO_RANGE + 3 * c + 2] = census->range[c].max;
 	}
-	char text[INFO_COLUMNS][CSV_NUMBER_SIZE], hash[CSV_NUMBER_SIZE], suspects[SUSPECTS_SIZE];
+	for (int a = 0; a < SUSPECTS_ALBEDOS; a++) {
+		for (int c = 0; c < MERL_CHANNELS; c++)
+			number[INFO_ALBEDO + 4 * a + c] = found->albedo[a][c];
+		number[INFO_ALBEDO + 4 * a + 3] = found->measured[a];
+	}
+	number[INFO_ENDS_AT] = found->ends_at;
+	char text[INFO_COLUMNS][CSV_NUMBER_SIZE], hash[CSV_NUMBER_SIZE], suspects[SUSPECTS_SIZE],
+		left_out[SUSPECTS_SIZE];
 	const char *cell[INFO_COLUMNS];
 	for (int c = 0; c < INFO_COLUMNS; c++)
 		cell[c] = csv_number(text[c], number[c]);
 	snprintf(hash, sizeof hash, "%016" PRIx64, measurement->file_hash);
-	write_suspects(suspects, measurement, census);
+	write_suspects(suspects, measurement, census, gamut, found);
 	cell[INFO_PATH] = path;
 	cell[INFO_HASH] = hash;
 	cell[INFO_SUSPECTS] = suspects;
+	write_left_out(left_out, measurement, gamut);
+	cell[INFO_FORMAT] = measurement->format;
+	cell[INFO_SYMMETRY] = symmetry_name(scattered ? scattered->symmetry : SYMMETRY_ISOTROPIC);
+	cell[INFO_LEFT_OUT] = left_out;
 	return csv_table_add(table, cell);
 }
 
@@ -109,12 +166,15 @@ static enum status inspect(struct csv_table *table, const struct options *option
 {
 	struct measurement measurement;
 	struct census census;
-	enum status status = merl_read(path, options->fit.threads, &measurement, error);
+	struct suspects suspects;
+	const struct read_options reading = options_reading(options, options->fit.threads);
+	enum status status = measurement_read(path, &reading, &measurement, error);
 	if (status != STATUS_OK)
 		return status;
+	suspects_find(&measurement, &options->fit.criterion, &suspects);
 	status = census_take(&measurement, options->fit.criterion.bins, &census);
 	if (status == STATUS_OK)
-		status = add_file(table, path, &measurement, &census);
+		status = add_file(table, path, &measurement, &census, options->gamut, &suspects);
 	if (status != STATUS_OK)
 		error_set(error, status, "out of memory");
 	measurement_free(&measurement);

@@ -2,6 +2,7 @@
 /* stdfit merge - the tables of a batch's shares, joined into the one that a single run would have written. */
 #include "fit/cli/messages.h"
 #include "fit/cli/options.h"
+#include "fit/cli/outputs.h"
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
 #include "fit/results/merge.h"
@@ -60,9 +61,12 @@ int cmd_merge(int argc, char **argv, atomic_bool *cancel)
 		return options_usage(COMMAND_MERGE, "expected tables FILE.csv, found none");
 	if (options.recursive && !n_files)
 		return options_usage(COMMAND_MERGE, "--recursive means nothing without files or directories");
-	if (n_files && files_collect(&files, options.path + m.n_paths, n_files, options.recursive, cancel)) {
+	const int bad =
+		n_files ? files_collect(&files, options.path + m.n_paths, n_files, options.recursive, cancel) : 0;
+	const int wrong = bad ? EXIT_FAILED : outputs_check(&options, files.path, files.n);
+	if (wrong >= 0) {
 		files_free(&files);
-		return EXIT_FAILED;
+		return wrong;
 	}
 	files_sort(&files);
 	const struct merge_files fitted = {files.path, files.n};

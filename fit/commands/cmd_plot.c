@@ -49,6 +49,9 @@ static void plot_one(struct plotting *p, const struct material *material)
 	for (int i = 0; i < PLOT_MATERIAL_TABLES && status == STATUS_OK; i++)
 		status = output_directory_spares(directory, plot_material_tables[i], p->options->path,
 						 p->options->n_paths, &error);
+	for (int i = 0; i < PLOT_MATERIAL_TABLES && status == STATUS_OK; i++)
+		status = output_directory_spares(directory, plot_material_tables[i], &material->row[0][RESULT_PATH], 1,
+						 &error);
 	if (status == STATUS_OK)
 		status = plot_material(directory, &data, &error);
 	if (status == STATUS_OK)

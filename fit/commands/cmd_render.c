@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit render - spheres of measured materials beside spheres of their models, and how much their pictures differ. */
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
+#include "data_readers/resample.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/files.h"
 #include "fit/cli/lighting.h"
 #include "fit/cli/messages.h"
+#include "fit/cli/outputs.h"
 #include "fit/cli/progress.h"
 #include "fit/commands/commands.h"
 #include "fit/render/pictures.h"
@@ -120,12 +122,15 @@ static enum status show_source(struct render *render, const char *path, struct m
 	struct shown_models shown;
 	enum status status = shown_models_choose(source, path, render->from_table, &shown, error);
 	if (status == STATUS_OK && !source->measurement.value[0])
-		status = merl_read(path, render->options->fit.threads, &source->measurement, error);
+		status = measurement_read(path, &shown.model[0]->reading, &source->measurement, error);
 	for (int i = 0; i < shown.n && status == STATUS_OK && render->from_table; i++)
 		status = result_check_input(shown.model[i]->input, &source->measurement, path, error);
 	if (status != STATUS_OK)
 		return status;
-	status = show_models(render, path, &source->measurement, &shown);
+	status = measurement_fill(&source->measurement, shown.model[0]->fit.criterion.bins,
+				  render->options->fit.threads);
+	if (status == STATUS_OK)
+		status = show_models(render, path, &source->measurement, &shown);
 	if (status == STATUS_OK)
 		return STATUS_OK;
 	char name[TEXT_QUOTE_SIZE];
@@ -180,8 +185,9 @@ static bool ends_with(const char *path, const char *ending)
 
 static enum status write_picture(const struct render *render, struct error *error)
 {
-	return ends_with(render->picture, ".png") ? image_write_png(render->picture, &render->sheet.image, error)
-						  : image_write_pfm(render->picture, &render->sheet.image, error);
+	const bool png = ends_with(render->picture, ".png") || (render->options->to_standard_output && image_has_png());
+	return png ? image_write_png(render->picture, &render->sheet.image, error)
+		   : image_write_pfm(render->picture, &render->sheet.image, error);
 }
 
 /* Shows the files, reports them, and writes the picture unless nothing or not everything could be tried. */
@@ -202,7 +208,8 @@ static int show_files(struct render *render, const struct files *files)
 	for (size_t i = 0; i < files->n && !*options->cancel; i++)
 		failed += show_file(render, files->path[i]) != STATUS_OK;
 	progress_erase(&render->progress);
-	report_output(&render->output, options_show(options), report_table);
+	report_output(&render->output, options->to_standard_output ? SHOW_NOTHING : options_show(options),
+		      report_table);
 	if (*options->cancel)
 		return EXIT_INTERRUPTED;
 	sheet_end(&render->sheet, render->n_drawn);
@@ -211,16 +218,6 @@ static int show_files(struct render *render, const struct files *files)
 		return EXIT_FAILED;
 	}
 	return failed ? EXIT_FAILED : EXIT_DONE;
-}
-
-/* A picture that replaced what it is made from would be the last one. */
-static int check_output(const struct render *render, const struct files *files)
-{
-	const char *const read[] = {render->options->from, render->options->environment};
-	bool replaces = render->picture && files_has(files, render->picture);
-	for (size_t i = 0; i < sizeof read / sizeof *read && render->picture; i++)
-		replaces |= read[i] && files_same(read[i], render->picture) && !access(read[i], F_OK);
-	return replaces ? options_usage(COMMAND_RENDER, "--output names a file that is to be read") : -1;
 }
 
 static int collect_and_show(struct render *render)
@@ -240,7 +237,7 @@ static int collect_and_show(struct render *render)
 		report_error("%s", error.text);
 	int code = status != STATUS_OK || bad < 0 || !files.n ? EXIT_FAILED : -1;
 	if (code < 0)
-		code = check_output(render, &files);
+		code = outputs_check(options, files.path, files.n);
 	if (code < 0)
 		code = show_files(render, &files);
 	files_free(&files);
@@ -272,10 +269,16 @@ static int check_picture(struct render *render, char **renamed)
 	render->picture = render->options->picture;
 	if (!render->picture)
 		return -1;
+	if (outputs_standard(render->picture)) {
+		if (render->options->json || render->options->readable)
+			return options_usage(COMMAND_RENDER, "--json and --table need standard output, as does -o -");
+		render->options->to_standard_output = true;
+		return -1;
+	}
 	if (ends_with(render->picture, ".pfm"))
 		return -1;
 	if (!ends_with(render->picture, ".png"))
-		return options_usage(COMMAND_RENDER, "expected -o FILE.png or -o FILE.pfm");
+		return options_usage(COMMAND_RENDER, "expected -o FILE.png, -o FILE.pfm or -o -");
 	if (image_has_png())
 		return -1;
 	if (asprintf(renamed, "%.*s.pfm", (int)(strlen(render->picture) - 4), render->picture) < 0)
@@ -283,7 +286,7 @@ static int check_picture(struct render *render, char **renamed)
 	char name[TEXT_QUOTE_SIZE];
 	text_quote(*renamed ? *renamed : "", name, sizeof name);
 	report_error("this build cannot write PNG, as it was made without libpng: the picture goes to '%s'", name);
-	render->picture = *renamed;
+	render->picture = render->options->picture = *renamed;
 	return *renamed ? -1 : EXIT_FAILED;
 }
 

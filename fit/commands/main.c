@@ -4,6 +4,7 @@
 #include "fit/cli/manual.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/options.h"
+#include "fit/cli/stack.h"
 #include "fit/commands/commands.h"
 
 #include <errno.h>
@@ -101,7 +102,8 @@ int main(int argc, char **argv)
 	occupy_standard_streams();
 	catch_signals();
 	gsl_set_error_handler_off();
-	const int code = dispatch(argc, argv);
+	const int unfit = stack_prepare();
+	const int code = unfit >= 0 ? unfit : dispatch(argc, argv);
 	errno = 0;
 	const bool failed = ferror(stdout);
 	if ((!fclose(stdout) && !failed) || code == EXIT_INTERRUPTED || code == EXIT_FAILED)

@@ -6,6 +6,7 @@
 #include <gsl/gsl_statistics_float.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* A cosine nearer to 0 is that of an entry on the horizon, to rounding; a measurement there is nothing strange. */
 #define HORIZON 1e-9
@@ -33,6 +34,14 @@ static void count_entries(const struct measurement *measurement, enum bins bins,
 			}
 }
 
+/* Scattered entries are valid and above the horizon, all of them. */
+static void copy_entries(const struct measurement *measurement, float *const value[], struct census *census)
+{
+	census->valid = census->above = census->valid_above = measurement_count(measurement);
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		memcpy(value[c], measurement->scattered->value[c], census->valid * sizeof *value[c]);
+}
+
 /* In double: the sum of two floats may be none. Reorders the values. */
 static double median(float *value, size_t n)
 {
@@ -48,7 +57,10 @@ enum status census_take(const struct measurement *measurement, enum bins bins, s
 		return STATUS_NO_MEMORY;
 	float *const value[MERL_CHANNELS] = {values, values + n, values + 2 * n};
 	*census = (struct census){0};
-	count_entries(measurement, bins, value, census);
+	if (measurement->scattered)
+		copy_entries(measurement, value, census);
+	else
+		count_entries(measurement, bins, value, census);
 	for (int c = 0; c < MERL_CHANNELS; c++) {
 		struct census_range *range = &census->range[c];
 		*range = (struct census_range){NAN, NAN, NAN};

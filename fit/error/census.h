@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* census - what is in a measured table: valid entries on either side of the horizon, and the range of their values. */
+/* census - what is in a measurement: valid entries on either side of the horizon, and the range of their values. */
 #ifndef CENSUS_H
 #define CENSUS_H
 
@@ -19,7 +19,7 @@ struct census {
 	struct census_range range[MERL_CHANNELS]; /* of valid entries above the horizon */
 };
 
-/* census_take - counts the entries of a table (n_phi_d of 180 or 360). STATUS_NO_MEMORY. */
+/* census_take - counts the entries of a table (n_phi_d of 180 or 360), or scattered ones. STATUS_NO_MEMORY. */
 MUST_CHECK enum status census_take(const struct measurement *measurement, enum bins bins, struct census *census);
 
 #endif

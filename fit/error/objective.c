@@ -196,13 +196,27 @@ static void pass_block(struct objective *o, const struct evaluation *asked, int 
 					&o->sums[block][p]);
 }
 
+/* The same of values that stand in the unit of a sample set. */
+static struct evaluation in_unit(const struct evaluation *asked, double unit)
+{
+	struct evaluation own = *asked;
+
+	for (int p = 0; p < own.n_problems; p++) {
+		own.at[p].d *= unit;
+		own.at[p].ks *= unit;
+		own.at[p].floor *= unit;
+	}
+	return own;
+}
+
 /* One pass over the table; with `lobe`, s is computed on the way, while each block is in cache. The blocks' sums are
  * added in their order: the result is the same to the bit for any number of threads. Tasks, not a parallel loop: on a
  * busy machine this thread then does what the others do not come to, and never waits for one that has not begun. */
-static void pass(struct objective *o, const struct evaluation *asked, bool lobe, struct kernel_sums total[])
+static void pass(struct objective *o, const struct evaluation *wanted, bool lobe, struct kernel_sums total[])
 {
 	enum { CHUNK = 8 };
 	const size_t n_blocks = (size_t)o->table->n_blocks;
+	const struct evaluation own = in_unit(wanted, o->table->unit), *asked = &own;
 
 	o->passes++;
 #pragma GCC diagnostic push
@@ -225,6 +239,9 @@ static void pass(struct objective *o, const struct evaluation *asked, bool lobe,
 			for (int a = 0; a < 3; a++)
 				total[p].curvature[a] += sums->curvature[a];
 		}
+		total[p].error /= o->table->unit;
+		for (int a = 0; a < 3; a++)
+			total[p].curvature[a] *= o->table->unit;
 	}
 }
 
@@ -277,13 +294,12 @@ static bool within_twice(double a, double b)
 	return !(a > 2 * b) && !(b > 2 * a); /* NaN: a parameter that the model lacks */
 }
 
-void objective_jump(struct objective *o, const struct shape *to)
+/* Whether the inner solve of one shape helps that of another. Second derivatives go with the square of the lobe: handed on
+ * to a lobe far smaller, they make a Newton step that is far too short look like the last one. And the ks of a low lobe is
+ * no place to begin where the lobe is so high that its own is 1e-8: the way there is too long for a quadratic model. */
+static bool helps(const struct shape *a, const struct shape *b)
 {
-	const struct shape *from = &o->start.shape;
-
-	if (!within_twice(from->sigma, to->sigma) || !within_twice(from->ior - 1, to->ior - 1) ||
-	    !within_twice(from->k, to->k))
-		memset(o->start.h, 0, sizeof o->start.h);
+	return within_twice(a->sigma, b->sigma) && within_twice(a->ior - 1, b->ior - 1) && within_twice(a->k, b->k);
 }
 
 /* The mean measurement of a problem. */
@@ -298,8 +314,11 @@ static double mean_measured(const struct objective *o, int p)
 #define PRECISE 1e-5
 
 /* With one kd and ks for all channels there is one problem, their sum; else one a channel. */
-static void start(const struct objective *o, struct l1 problem[], int n_problems, double tolerance, bool certify)
+static void start(const struct objective *o, const struct shape *shape, struct l1 problem[], int n_problems,
+		  double tolerance, bool certify)
 {
+	const bool precise = tolerance < PRECISE;
+	const bool afresh = isnan(o->start.kd[0]) || (precise && !helps(&o->start.shape, shape));
 	const double *sum = o->table->sum;
 
 	for (int p = 0; p < n_problems; p++) {
@@ -307,13 +326,13 @@ static void start(const struct objective *o, struct l1 problem[], int n_problems
 		const double scale = n_problems == 1 ? sum[0] + sum[1] + sum[2] : sum[p];
 		const double known[2] = {o->start.kd[p] / M_PI, o->start.ks[p]};
 		const bool faint = sum[p] > 0 && mean_measured(o, p) < L1_FAR * fmax(box->hi[0], box->hi[1]);
-		const bool cold = isnan(o->start.kd[0]) || faint, at_zero = box->lo[0] == 0 && box->lo[1] == 0;
+		const bool cold = afresh || faint, at_zero = box->lo[0] == 0 && box->lo[1] == 0;
 
 		l1_start(&problem[p], box->lo, box->hi,
 			 !cold     ? known
 			 : at_zero ? NULL
 				   : box->lo,
-			 !cold && tolerance < PRECISE ? o->start.h[p] : NULL, scale, tolerance, certify);
+			 !cold && precise ? o->start.h[p] : NULL, scale, tolerance, certify);
 	}
 }
 
@@ -365,7 +384,7 @@ double objective_eval(struct objective *o, const struct shape *shape, double tol
 		return OBJECTIVE_NO_FIT;
 	}
 	fill_rows(o, shape);
-	start(o, problem, n_problems, tolerance, certify);
+	start(o, shape, problem, n_problems, tolerance, certify);
 	while (going) {
 		struct evaluation asked = {.n_problems = n_problems};
 

@@ -72,11 +72,6 @@ void objective_free(struct objective *objective);
 void objective_forget(struct objective *objective);
 void objective_begin(struct objective *objective, const struct linear *linear);
 
-/* objective_jump - for a search that jumps: forgets the second derivatives of the last inner solve, unless shape `to` is near
- * the one that they are of. They go with the square of the lobe; handed on to a lobe far smaller, they make a Newton step
- * that is far too short look like the last one. */
-void objective_jump(struct objective *objective, const struct shape *to);
-
 /* objective_upper_bound - the upper end of kd, or of ks: far beyond any material when unbounded. */
 double objective_upper_bound(const struct fit_options *options, bool specular);
 /* objective_fix - holds kd (or ks) of a channel, of all of them in a gray fit, at a value from now on;

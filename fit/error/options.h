@@ -27,13 +27,15 @@ struct criterion {
 	enum gaf gaf; /* of the model: that of V-grooves is a factor of the geometry */
 	enum weight weight;
 	enum bins bins;
-	double max_theta; /* degrees, (0, 90]; entries with theta_i or theta_o above it are dropped; 90 = none */
+	double max_theta;     /* degrees, (0, 90]; entries with theta_i or theta_o above it are dropped; 90 = none */
+	bool zero_is_missing; /* entries that are 0 in all channels count as not measured */
 };
 
 /* criterion_equal - whether two are the same in every field. */
 static inline bool criterion_equal(const struct criterion *a, const struct criterion *b)
 {
-	return a->gaf == b->gaf && a->weight == b->weight && a->bins == b->bins && a->max_theta == b->max_theta;
+	return a->gaf == b->gaf && a->weight == b->weight && a->bins == b->bins && a->max_theta == b->max_theta &&
+	       a->zero_is_missing == b->zero_is_missing;
 }
 
 /* Domain of the fit. */
@@ -47,7 +49,7 @@ static inline bool criterion_equal(const struct criterion *a, const struct crite
 #define FIT_K_MAX 100.0
 #define FIT_FACTOR_MAX 1e6 /* kd, ks when unbounded: far beyond any material */
 
-enum { FIT_NDFS_MAX = 16 };
+enum { FIT_NDFS_MAX = 16, FIT_THREADS_MAX = 1024 };
 
 struct algorithm;
 
@@ -98,7 +100,8 @@ static inline bool fit_cancelled(const struct fit_options *options)
 	       (options->stop && __atomic_load_n(options->stop, __ATOMIC_RELAXED));
 }
 
-/* struct fit_options' defaults: STD, GGX and Beckmann, the paper's model and error, all processors. */
+/* struct fit_options' defaults: STD, GGX and Beckmann, the paper's model and error, as many threads as OpenMP
+ * would take, FIT_THREADS_MAX at most. */
 struct fit_options fit_options_default(void);
 
 #endif

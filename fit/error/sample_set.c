@@ -5,20 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double degree = M_PI / 180;
-
-double cell_measure(int i, int j)
-{
-	const struct halfdiff low = bins_angles(BINS_NODE, i, j, 0), high = bins_angles(BINS_NODE, i + 1, j + 1, 0);
-	const double h0 = low.theta_h, h1 = high.theta_h, d0 = low.theta_d, d1 = high.theta_d;
-	/* cos a - cos b and (sin^2 b - sin^2 a)/2 as products: no cancellation in narrow cells. */
-	const double w_h = 2 * M_PI * 2 * sin((h0 + h1) / 2) * sin((h1 - h0) / 2);
-	const double w_d = sin(d0 + d1) * sin(d1 - d0) / 2;
-
-	/* phi_d is one degree wide in both variants of the table. */
-	return 4 * w_h * w_d * degree;
-}
-
 double weight_at(enum weight weight, int i, int j, double cos_i, double cos_o)
 {
 	switch (weight) {
@@ -185,6 +171,7 @@ enum status sample_set_alloc(struct sample_set *table, const struct geometry *ge
 				     .scattered = scattered,
 				     .n_blocks = pair_blocks + single_blocks,
 				     .n_pair_blocks = pair_blocks,
+				     .unit = 1,
 				     .n_samples = n_pairs + n_singles};
 	const enum status status = scattered ? alloc_scattered(table, samples) : alloc_of_table(table, samples);
 
@@ -249,7 +236,7 @@ static int valid_members(const struct geometry *g, const struct measurement *mea
 	for (int a = 0; a < count; a++) {
 		const size_t entry = measurement_at(g->n_phi_d, 0, g->row[n], k[a]);
 
-		if (!isnan(measurement->value[0][entry]))
+		if (!entry_is_missing(measurement, &g->criterion, entry))
 			at[valid++] = entry;
 	}
 	return valid;
@@ -264,7 +251,7 @@ static void put(struct sample_set *table, const struct measurement *measurement,
 		int members, double sum[])
 {
 	const struct geometry *g = table->geometry;
-	const float w = g->w[n];
+	const float w = g->w[n], unit = (float)table->unit;
 
 	table->q_i[to] = g->q_i[n];
 	table->q_o[to] = g->q_o[n];
@@ -275,8 +262,8 @@ static void put(struct sample_set *table, const struct measurement *measurement,
 		float *value = sample_set_value(table, (int)(to / KERNEL_BLOCK), c) + to % KERNEL_BLOCK;
 
 		for (int a = 0; a < members; a++) {
-			value[a * KERNEL_BLOCK] = w * measurement->value[c][at[a]];
-			sum[c] += (double)value[a * KERNEL_BLOCK];
+			value[a * KERNEL_BLOCK] = w * (measurement->value[c][at[a]] * unit);
+			sum[c] += (double)value[a * KERNEL_BLOCK] / table->unit;
 		}
 	}
 }
@@ -294,6 +281,31 @@ static void fill_row(struct sample_set *table, const struct measurement *measure
 			put(table, measurement, n, fill->pair++, at + a, 2, fill->sum);
 		if (valid % 2)
 			put(table, measurement, n, fill->single++, at + valid - 1, 1, fill->sum);
+	}
+}
+
+/* A mean measurement below FAINT asks for another unit: arithmetic on what is too small for a normal float is a hundred
+ * times slower, and inexact. FAINT_UNIT is far above what that takes, and far below where the lobe of the largest D and
+ * geometric factor, 1e25, overflows. */
+#define FAINT 1e-15
+#define FAINT_UNIT 0x1p40
+
+/* Fills in all samples; those of theta_h index i go where fill[i] says. */
+static void take_values(struct sample_set *table, const struct measurement *measurement, int threads,
+			const struct fill fill[])
+{
+	struct fill row[MERL_THETA_H];
+
+	memcpy(row, fill, sizeof row);
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+	for (int i = 0; i < MERL_THETA_H; i++)
+		fill_row(table, measurement, i, &row[i]);
+	table->sum_w = 0;
+	memset(table->sum, 0, sizeof table->sum);
+	for (int i = 0; i < MERL_THETA_H; i++) {
+		table->sum_w += row[i].sum_w;
+		for (int c = 0; c < MERL_CHANNELS; c++)
+			table->sum[c] += row[i].sum[c];
 	}
 }
 
@@ -349,13 +361,10 @@ static enum status take_table(struct sample_set *table, const struct geometry *g
 		return status;
 	for (int i = 0; i < MERL_THETA_H; i++)
 		fill[i].single += (size_t)table->n_pair_blocks * KERNEL_BLOCK;
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-	for (int i = 0; i < MERL_THETA_H; i++)
-		fill_row(table, measurement, i, &fill[i]);
-	for (int i = 0; i < MERL_THETA_H; i++) {
-		table->sum_w += fill[i].sum_w;
-		for (int c = 0; c < MERL_CHANNELS; c++)
-			table->sum[c] += fill[i].sum[c];
+	take_values(table, measurement, threads, fill);
+	if (table->sum[0] + table->sum[1] + table->sum[2] < FAINT * table->sum_w) {
+		table->unit = FAINT_UNIT;
+		take_values(table, measurement, threads, fill);
 	}
 	*pairs = n_pairs;
 	*singles = n_singles;
@@ -404,7 +413,7 @@ static double measured_share(const struct sample_set *table, size_t n)
 		for (int a = 0; a < members; a++)
 			share += (double)value[a * KERNEL_BLOCK];
 	}
-	return share / total;
+	return share / (total * table->unit);
 }
 
 /* Scales p so that the sum of min(1, p) is n_samples, or every p is 1. */
@@ -488,6 +497,7 @@ enum status sample_set_thin(struct sample_set *table, const struct sample_set *f
 	pad_all(table, n_selected[0], n_selected[1]);
 	memcpy(table->sum, full->sum, sizeof table->sum);
 	table->sum_w = full->sum_w;
+	table->unit = full->unit;
 	table->n_entries = full->n_entries;
 	table->range = full->range;
 out:

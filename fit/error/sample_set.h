@@ -6,6 +6,7 @@
 #include "fit/error/entries.h"
 #include "fit/error/kernel.h"
 #include "fit/error/options.h"
+#include <math.h>
 #include <stddef.h>
 
 enum { MERL_ROWS = MERL_THETA_H * MERL_THETA_D };
@@ -52,7 +53,8 @@ struct sample_set {
 	float *plane[KERNEL_PLANES]; /* one block of memory */
 	uint32_t *entry;             /* of *scattered */
 	struct sample_range range;
-	float *value;              /* w m; per block: channel by channel, first members, then second ones */
+	float *value;              /* unit w m; per block: channel by channel, first members, then second ones */
+	double unit;               /* a power of two: 1 but for data so faint that floats would be denormal */
 	double sum[MERL_CHANNELS]; /* sum of w m per channel */
 	double sum_w;              /* sum of w over the entries of one channel */
 	size_t n_entries;          /* entries of three channels */
@@ -100,9 +102,6 @@ static inline float *sample_set_value(const struct sample_set *table, int block,
 	return table->value + (size_t)KERNEL_BLOCK * (size_t)(MERL_CHANNELS * (pairs + block) + members * c);
 }
 
-/* cell_measure - solid angle of a cell in wi and wo, the integral of 4 cos_d dw_h dw_d over all phi_h and
- * [i, i+1) x [j, j+1) x [k, k+1): sr^2. */
-double cell_measure(int i, int j);
 /* weight_at - w of entry (i, j, .) of a table, given its cosines; wants none of them for WEIGHT_NONE. */
 double weight_at(enum weight weight, int i, int j, double cos_i, double cos_o);
 /* weight_of_entry - the same of a scattered entry, whose solid angle it has itself. */
@@ -111,5 +110,24 @@ double weight_of_entry(enum weight weight, double solid_angle, double cos_i, dou
 /* max_theta_cos - the smallest cosine that `max_theta` degrees allow; entry_in_range - whether an entry takes part. */
 double max_theta_cos(double max_theta);
 bool entry_in_range(struct vec3 wi, struct vec3 wo, double min_cos);
+
+/* entry_is_missing - whether the entry at this index of a plane is not measured: masked, or, where zeros count so, 0 in all
+ * channels. */
+static inline bool entry_is_missing(const struct measurement *measurement, const struct criterion *criterion, size_t at)
+{
+	if (isnan(measurement->value[0][at]))
+		return true;
+	return criterion->zero_is_missing && measurement->value[0][at] == 0 && measurement->value[1][at] == 0 &&
+	       measurement->value[2][at] == 0;
+}
+
+/* scattered_takes_part - whether entry n is in range and not missing. min_cos: of the criterion's max_theta. */
+static inline bool scattered_takes_part(const struct scattered *s, const struct criterion *criterion, double min_cos,
+					size_t n)
+{
+	if (criterion->zero_is_missing && s->value[0][n] == 0 && s->value[1][n] == 0 && s->value[2][n] == 0)
+		return false;
+	return entry_in_range(s->wi[n], s->wo[n], min_cos);
+}
 
 #endif

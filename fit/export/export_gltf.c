@@ -51,7 +51,7 @@ static void add_row(const struct export *export, const struct measurement *measu
 			struct vec3 wi, wo;
 			double f[3];
 			entries_dirs(entries, i, j, k, &wi, &wo);
-			if (isnan(measurement->value[0][at]) || !entry_in_range(wi, wo, min_cos))
+			if (entry_is_missing(measurement, &fit->criterion, at) || !entry_in_range(wi, wo, min_cos))
 				continue;
 			gltf_f(&export->model, wi, wo, f);
 			const double w = weight_at(fit->criterion.weight, i, j, wi.z, wo.z);

@@ -17,7 +17,7 @@ static size_t lobe_and_weight(const struct measurement *measurement, const struc
 		for (int j = 0; j < MERL_THETA_D; j++)
 			for (int k = 0; k < measurement->n_phi_d; k++, entry++) {
 				struct vec3 wi, wo;
-				if (isnan(measurement->value[0][entry]))
+				if (entry_is_missing(measurement, &fit->criterion, entry))
 					continue;
 				entries_dirs(&entries, i, j, k, &wi, &wo);
 				if (!entry_in_range(wi, wo, min_cos))

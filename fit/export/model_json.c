@@ -125,6 +125,7 @@ static enum status read_fitted(const json_t *json, struct model_json *read, stru
 {
 	const json_t *fitted = json_object_get(json, "fitted");
 	fit->criterion.max_theta = number_of(json_object_get(fitted, "max_theta"));
+	fit->criterion.zero_is_missing = json_is_true(json_object_get(fitted, "zero_is_missing"));
 	read->error = number_of(json_object_get(fitted, "error"));
 	if (weight_find(text_of(fitted, "weight"), &fit->criterion.weight) != STATUS_OK ||
 	    bins_find(text_of(fitted, "bins"), &fit->criterion.bins) != STATUS_OK ||

@@ -11,7 +11,8 @@
  *       "nodes": {"theta": [...], "D": [...]},   pl instead: D, 1/sr, linear in theta, radians, from 0 to pi/2
  *       "lambda": "exact",                       a name of lambda_form.h
  *       "gaf": "uncorrelated", "fresnel": "dielectric", "ior": n, "k": k,
- *       "fitted": {"path": ..., "weight": ..., "bins": ..., "max_theta": ..., "error": E}     path and E may be null
+ *       "fitted": {"path": ..., "weight": ..., "bins": ..., "max_theta": ..., "error": E}     path and E may be null;
+ *                 with "zero_is_missing": true where the fit left zeros out
  *     } */
 #ifndef MODEL_JSON_H
 #define MODEL_JSON_H

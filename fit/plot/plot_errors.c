@@ -41,9 +41,10 @@ static enum status write_errors_script(const char *directory, const struct error
 		return status;
 	gnuplot_begin(file.stream, "errors", width, 560);
 	fprintf(file.stream,
-		"set title \"error of the fits, %zu materials in order of %s\"\nset ylabel \"error E\"\n"
+		"set title \"error of the fits, %zu material%s in order of %s\"\nset ylabel \"error E\"\n"
 		"set xrange [-0.5:%g]\nset yrange [0:*]\nset key outside top center horizontal\n",
-		grid->n_fitted, grid->by_std ? "that of std" : "their lowest", (double)grid->n_fitted - 0.5);
+		grid->n_fitted, grid->n_fitted == 1 ? "" : "s", grid->by_std ? "that of std" : "their lowest",
+		(double)grid->n_fitted - 0.5);
 	fprintf(file.stream, "set xtics rotate by 60 right noenhanced scale 0.5\n%s",
 		grid->n_fitted > LABELS_MOST ? "unset xtics\nset xlabel \"materials\"\n" : "");
 	for (int n = 0; n < grid->n_ndf; n++) {

@@ -52,10 +52,8 @@ enum status course_judge(struct course *course, const struct sample_set *full, c
 			const struct shape shape = {.sigma = p->sigma, .gamma = p->gamma, .ior = p->ior, .k = p->k};
 			if (fit_cancelled(options))
 				status = STATUS_INTERRUPTED;
-			else if (p->ndf == ready && is_thinned(p)) {
-				objective_jump(&objective, &shape);
+			else if (p->ndf == ready && is_thinned(p))
 				p->error = objective_eval(&objective, &shape, 1e-6, false, &linear);
-			}
 		}
 		objective_free(&objective);
 	}

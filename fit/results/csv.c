@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/results/csv.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_file.h"
 #include "data_readers/text_quote.h"
 
@@ -73,7 +74,7 @@ enum status csv_table_move(struct csv_table *table, struct csv_table *from)
 bool csv_is_name(const char *path)
 {
 	const size_t length = strlen(path);
-	return length > 4 && !strcasecmp(path + length - 4, ".csv");
+	return length > 4 && !strcasecmp(path + length - 4, ".csv") && !measurement_is_known(path);
 }
 
 /* Writing */

@@ -121,21 +121,6 @@ static enum status check_origin(const struct merge *m, struct error *error)
 	return STATUS_OK;
 }
 
-/* With --within a material has one row, of whatever NDF was chosen; in a failed one's rows none was. */
-static bool one_row_a_file(const struct merge *m)
-{
-	return strstr(m->part[0].cell[RESULT_OPTIONS], "within=");
-}
-
-/* The first column but seconds in which two rows differ; RESULT_COLUMNS when there is none. */
-static enum result_column first_difference(const struct merge_part *a, const struct merge_part *b)
-{
-	enum result_column c = 0;
-	while (c < RESULT_COLUMNS && (c == RESULT_SECONDS || !strcmp(a->cell[c], b->cell[c])))
-		c++;
-	return c;
-}
-
 /* Two rows of one file: both say the same of its bytes, and of one fit there is one result. Returns whether they are the
  * same row in *same. */
 static enum status check_pair(const struct merge *m, const struct merge_part *a, const struct merge_part *b, bool *same,
@@ -143,8 +128,9 @@ static enum status check_pair(const struct merge *m, const struct merge_part *a,
 {
 	char here[LOCATION_SIZE], there[LOCATION_SIZE];
 	*same = !strcmp(a->cell[RESULT_NDF], b->cell[RESULT_NDF]);
-	const bool rivals = *same || (one_row_a_file(m) && !(result_failed(a->cell) && result_failed(b->cell)));
-	const enum result_column c = rivals ? first_difference(b, a) : RESULT_COLUMNS;
+	const bool rivals = *same || (result_one_row_a_file(m->part[0].cell) &&
+				      !(result_failed(a->cell) && result_failed(b->cell)));
+	const enum result_column c = rivals ? result_difference(b->cell, a->cell) : RESULT_COLUMNS;
 	if (c < RESULT_COLUMNS)
 		return error_set(error, STATUS_FORMAT, "%s: differs in %s from %s, of the same file", location(here, b),
 				 result_columns[c].name, location(there, a));
@@ -198,7 +184,7 @@ static enum status lacks(const struct merge_part *without, const struct merge_pa
 static enum status check_ndfs(const struct merge *m, struct error *error)
 {
 	size_t i = 0, j = next_file(m, 0);
-	while (j < m->n && !one_row_a_file(m)) {
+	while (j < m->n && !result_one_row_a_file(m->part[0].cell)) {
 		const size_t end_i = j, end_j = next_file(m, j), start = j;
 		for (; i < end_i || j < end_j; i++, j++) {
 			const int order = i == end_i ? 1

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/results/result.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/results/energy_conservation.h"
 #include "fit/search/free_form.h"
@@ -7,6 +8,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 const struct csv_column result_columns[RESULT_COLUMNS] = {
 	[RESULT_MATERIAL] = {"material", false},
@@ -49,6 +51,7 @@ const struct csv_column result_columns[RESULT_COLUMNS] = {
 	[RESULT_ALBEDO_G] = {"albedo_g", true},
 	[RESULT_ALBEDO_B] = {"albedo_b", true},
 	[RESULT_ENERGY] = {"energy", false},
+	[RESULT_SUSPECTS] = {"suspects", false},
 };
 
 void result_input(char text[RESULT_INPUT_SIZE], const struct measurement *measurement)
@@ -73,16 +76,42 @@ enum status result_check_input(const char *input, const struct measurement *meas
 	return error_set(error, STATUS_FORMAT, "cannot show '%s': it is not the file any more that was fitted", name);
 }
 
+enum { RECORDED_SIZE = 32 };
+
+/* The value behind NAME= in the text of the options; false: it is not there, or does not fit. */
+static bool recorded(const char *options, const char *name, char value[RECORDED_SIZE])
+{
+	const size_t length = strlen(name);
+	for (const char *at = options; *at; at += strspn(at, " ")) {
+		const size_t n = strcspn(at, " ");
+		if (n > length && !strncmp(at, name, length) && n - length < RECORDED_SIZE) {
+			snprintf(value, RECORDED_SIZE, "%.*s", (int)(n - length), at + length);
+			return true;
+		}
+		at += n;
+	}
+	return false;
+}
+
+struct read_options result_reading(char *const *row, int threads)
+{
+	struct read_options reading = {.threads = threads};
+	char value[RECORDED_SIZE];
+	/* What is no name that this version knows leaves the default. */
+	if (recorded(row[RESULT_OPTIONS], "quantity=", value) && quantity_find(value, &reading.quantity) != STATUS_OK)
+		reading.quantity = QUANTITY_FROM_FILE;
+	if (recorded(row[RESULT_OPTIONS], "gamut=", value) && gamut_find(value, &reading.gamut) != STATUS_OK)
+		reading.gamut = GAMUT_CLIP;
+	return reading;
+}
+
 char *result_material(const char *path)
 {
-	static const char suffix[] = ".binary";
 	const char *slash = strrchr(path, '/');
 	char *name = strdup(slash ? slash + 1 : path);
 	if (!name)
 		return NULL;
-	const size_t length = strlen(name), cut = sizeof suffix - 1;
-	if (length > cut && !strcmp(name + length - cut, suffix))
-		name[length - cut] = '\0';
+	name[strlen(name) - measurement_extension(name)] = '\0';
 	return name;
 }
 
@@ -115,6 +144,7 @@ static struct row *row_new(const struct result_source *source, const struct fit_
 	row->cell[RESULT_PATH] = source->path;
 	row->cell[RESULT_INPUT] = source->input;
 	row->cell[RESULT_OPTIONS] = source->options;
+	row->cell[RESULT_SUSPECTS] = source->suspects;
 	row->cell[RESULT_VERSION] = STDFIT_VERSION;
 	return row;
 }
@@ -295,6 +325,19 @@ bool result_failed(char *const *row)
 	return !strncmp(row[RESULT_STATUS], "failed", strlen("failed"));
 }
 
+enum result_column result_difference(char *const *a, char *const *b)
+{
+	enum result_column c = 0;
+	while (c < RESULT_COLUMNS && (c == RESULT_SECONDS || !strcmp(a[c], b[c])))
+		c++;
+	return c;
+}
+
+bool result_one_row_a_file(char *const *row)
+{
+	return strstr(row[RESULT_OPTIONS], "within=");
+}
+
 double result_number(char *const *row, enum result_column column)
 {
 	double x = NAN;
@@ -432,6 +475,7 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 	options->criterion.max_theta = number_or(row, RESULT_MAX_THETA, 90);
 	if (!(options->criterion.max_theta > 0 && options->criterion.max_theta <= 90))
 		return bad_cell(row, RESULT_MAX_THETA, error);
+	options->criterion.zero_is_missing = strstr(row[RESULT_OPTIONS], "zero-is-missing=yes");
 	for (enum result_column c = 0; c < 3; c++) {
 		if (!is_factor(row, RESULT_KD_R + c, RESULT_KD_R))
 			return bad_cell(row, RESULT_KD_R + c, error);

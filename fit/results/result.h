@@ -3,6 +3,7 @@
 #ifndef RESULT_H
 #define RESULT_H
 
+#include "data_readers/quantity.h"
 #include "fit/results/csv.h"
 #include "fit/search/fit.h"
 
@@ -47,6 +48,7 @@ enum result_column {
 	RESULT_ALBEDO_G,
 	RESULT_ALBEDO_B,
 	RESULT_ENERGY,
+	RESULT_SUSPECTS,
 	RESULT_COLUMNS
 };
 
@@ -61,8 +63,9 @@ double result_metric(const struct fit_metrics *metrics, enum result_column colum
 /* struct result_source - what the rows of one file share. */
 struct result_source {
 	const char *path;
-	const char *input;   /* "<size>:<hash>", see result_input(); "" when it is no MERL file, NULL when not known */
-	const char *options; /* canonical text of every option that changes the result */
+	const char *input;    /* "<size>:<hash>", see result_input(); "" when it is no MERL file, NULL when not known */
+	const char *options;  /* canonical text of every option that changes the result */
+	const char *suspects; /* suspects_words(); NULL: none, or not looked for */
 };
 
 enum { RESULT_INPUT_SIZE = 40 };
@@ -74,7 +77,11 @@ bool result_is_input(const char *input, const struct measurement *measurement);
 MUST_CHECK enum status result_check_input(const char *input, const struct measurement *measurement, const char *path,
 					  struct error *error);
 
-/* result_material - newly allocated: the name of a file without its directory and `.binary`; NULL: out of memory. */
+/* result_reading - how the file of a row was read, as its options tell. */
+struct read_options result_reading(char *const *row, int threads);
+
+/* result_material - newly allocated: the name of a file without its directory and its extension, if that is of a known format;
+ * NULL: out of memory. */
 char *result_material(const char *path);
 
 /* result_add - appends the row of one fitted model. STATUS_NO_MEMORY. */
@@ -85,10 +92,17 @@ MUST_CHECK enum status result_add_failure(struct csv_table *table, const struct 
 					  const struct fit_options *options, const char *reason);
 bool result_failed(char *const *row);
 
+/* result_difference - the first column but seconds in which two rows differ; RESULT_COLUMNS when there is none. */
+enum result_column result_difference(char *const *a, char *const *b);
+/* result_one_row_a_file - whether a row was made with --within: then its file has one row, of whatever NDF was chosen, or,
+ * where the fit failed, a row for each NDF. */
+bool result_one_row_a_file(char *const *row);
+
 /* result_number - the value of a number column; NaN when empty. */
 double result_number(char *const *row, enum result_column column);
 
-/* result_model - the model that a row describes, and the options (G, Fresnel, bins, max_theta, weight) under which it
+/* result_model - the model that a row describes, and the options (G, Fresnel, bins, max_theta, zero_is_missing,
+ * weight) under which it
  * was fitted. What a row leaves empty the model has not: kd = 0 or ks = 0. STATUS_FORMAT when the row is of a failed
  * fit or describes no model; `error` then says what is wrong in it. */
 MUST_CHECK enum status result_model(char *const *row, struct cook_torrance *model, struct fit_options *options,

@@ -2,6 +2,7 @@
 #include "fit/results/store.h"
 #include "data_readers/atomic_file.h"
 #include "data_readers/text_quote.h"
+#include "fit/results/contradiction.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -18,49 +19,19 @@ static enum status cannot(struct error *error, const char *what, const char *pat
 			 strerror(errnum));
 }
 
-static bool is_regular(const char *path)
-{
-	struct stat info;
-	return !stat(path, &info) && S_ISREG(info.st_mode);
-}
-
 enum status store_probe(const char *path, struct error *error)
 {
-	struct stat info;
+	struct output output;
 	struct atomic_file file;
+	enum status status = output_find(&output, path, error);
+	const bool in_order = status == STATUS_OK && output.in_order;
+	output_close(&output);
 	/* Opening a pipe is seen at its other end. */
-	if (!stat(path, &info) && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))
-		return STATUS_OK;
-	const enum status status = atomic_file_open(&file, path, error);
+	if (status != STATUS_OK || in_order)
+		return status;
+	status = atomic_file_open(&file, path, error);
 	if (status == STATUS_OK)
 		atomic_file_abort(&file);
-	return status;
-}
-
-static bool is_link(const char *path)
-{
-	struct stat info;
-	return !lstat(path, &info) && S_ISLNK(info.st_mode);
-}
-
-/* Gives a regular file the name with ~ behind it, in place of its own or (`both`) beside it. */
-static enum status back_up(const char *path, bool both, struct error *error)
-{
-	if (!is_regular(path))
-		return STATUS_OK;
-	const size_t size = strlen(path) + sizeof "~";
-	char *backup = malloc(size);
-	if (!backup)
-		return cannot(error, "write", path, ENOMEM);
-	snprintf(backup, size, "%s~", path);
-	/* Where hard links are not to be had, the file is away for the moment until the new one takes its place. A
-	 * symbolic link stays, and so does the name of what it points to: that is what gets replaced. */
-	bool done = both && (!unlink(backup) || errno == ENOENT) &&
-		    !linkat(AT_FDCWD, path, AT_FDCWD, backup, AT_SYMLINK_FOLLOW);
-	if (!done && !(both && is_link(path)))
-		done = !rename(path, backup);
-	const enum status status = done ? STATUS_OK : cannot(error, "write", backup, errno);
-	free(backup);
 	return status;
 }
 
@@ -68,19 +39,14 @@ enum status store_write(const char *path, const struct csv_table *table,
 			void (*write)(FILE *file, const struct csv_table *table), struct error *error)
 {
 	struct atomic_file file;
-	enum status status = atomic_file_open(&file, path, error);
+	const enum status status = atomic_file_open(&file, path, error);
 	if (status != STATUS_OK)
 		return status;
+	file.keeps = true;
 	write(file.stream, table);
-	/* A full disk shows before the older file is touched. */
 	if (fflush(file.stream))
 		file.errnum = errno;
-	else
-		status = back_up(path, true, error);
-	if (status == STATUS_OK)
-		return atomic_file_commit(&file, error);
-	atomic_file_abort(&file);
-	return status;
+	return atomic_file_commit(&file, error);
 }
 
 /* The line of a row, or the header line for NULL, newly allocated; NULL when out of memory. */
@@ -150,12 +116,37 @@ enum status store_check_columns(const char *path, struct error *error)
 	return beginning == HEADER_WHOLE ? STATUS_OK : foreign_columns(path, "merge", error);
 }
 
+/* Puts the old rows in order and finds out which of them count. */
+static enum status sort_old(struct store *store)
+{
+	struct contradiction found, again;
+	store->stale = calloc(store->old.n_rows + 1, sizeof(*store->stale));
+	store->doubtful = calloc(store->old.n_rows + 1, sizeof(*store->doubtful));
+	if (!store->stale || !store->doubtful)
+		return STATUS_NO_MEMORY;
+	/* The rows' numbers are those of the file, the flags those of the order. */
+	enum status status = contradiction_find(&store->old, SAME_RUN, &found, NULL, NULL);
+	if (store->old.n_rows)
+		qsort(store->old.row, store->old.n_rows, sizeof(*store->old.row), path_order);
+	if (status == STATUS_OK)
+		status = contradiction_find(&store->old, SAME_RUN, &again, store->doubtful, store->stale);
+	if (status == STATUS_OK && found.first) {
+		char name[TEXT_QUOTE_SIZE];
+		text_quote(store->path, name, sizeof name);
+		error_set(&store->doubt, STATUS_FORMAT,
+			  "'%s' rows %zu and %zu, of the same fit, differ in %s: such fits are made again", name,
+			  found.first, found.second, result_columns[found.column].name);
+	}
+	return status;
+}
+
 /* Reads what an earlier run left and cuts off the rest of an interrupted write. */
 static enum status resume_old(struct store *store, struct error *error)
 {
+	const int fd = store->output.fd;
 	enum beginning beginning = HEADER_FOREIGN;
 	size_t complete = 0;
-	if (look_at_header(store->fd, &beginning))
+	if (look_at_header(fd, &beginning))
 		return cannot(error, "read", store->path, errno);
 	if (beginning == HEADER_FOREIGN)
 		return foreign_columns(store->path, "resume", error);
@@ -165,32 +156,31 @@ static enum status resume_old(struct store *store, struct error *error)
 		if (status != STATUS_OK)
 			return status;
 	}
-	store->stale = calloc(store->old.n_rows + 1, sizeof(*store->stale));
-	if (!store->stale)
+	if (sort_old(store) != STATUS_OK)
 		return cannot(error, "read", store->path, ENOMEM);
-	if (store->old.n_rows)
-		qsort(store->old.row, store->old.n_rows, sizeof(*store->old.row), path_order);
-	return ftruncate(store->fd, (off_t)complete) ? cannot(error, "write", store->path, errno) : STATUS_OK;
-}
-
-static enum status open_table(struct store *store, int flags, struct error *error)
-{
-	store->fd = open(store->path, flags | O_APPEND | O_CLOEXEC | O_NOCTTY, 0666);
-	return store->fd < 0 ? cannot(error, "write", store->path, errno) : STATUS_OK;
+	/* The last run was killed when it had made the backup: what is appended must not appear there. */
+	char *backup = output_is_backup(&store->output) ? output_backup_name(&store->output) : NULL;
+	if (backup)
+		unlink(backup);
+	free(backup);
+	return ftruncate(fd, (off_t)complete) ? cannot(error, "write", store->path, errno) : STATUS_OK;
 }
 
 enum status store_open(struct store *store, const char *path, bool resume, struct error *error)
 {
-	*store = (struct store){.path = path, .fd = -1, .old = csv_table_make(result_columns, RESULT_COLUMNS)};
-	struct stat info;
-	const bool exists = !stat(path, &info);
-	store->regular = !exists || S_ISREG(info.st_mode);
-	store->replaces = exists && store->regular && !resume;
-	store->created = !exists;
-	/* A pipe opened for reading too would be its own reader and swallow the rows. */
-	const bool resumes = exists && store->regular && resume;
-	enum status status = open_table(store, exists ? (resumes ? O_RDWR : O_WRONLY) : O_WRONLY | O_CREAT, error);
-	if (status == STATUS_OK && resumes)
+	*store = (struct store){.path = path, .old = csv_table_make(result_columns, RESULT_COLUMNS)};
+	enum status status = output_find(&store->output, path, error);
+	if (status == STATUS_OK && resume && store->output.in_order) {
+		char name[TEXT_QUOTE_SIZE];
+		text_quote(path, name, sizeof name);
+		status = error_set(error, STATUS_IO,
+				   "cannot resume '%s': expected a file, found a pipe, a device or a descriptor", name);
+	}
+	if (status == STATUS_OK)
+		status = output_open(&store->output, resume ? OUTPUT_GO_ON : OUTPUT_BEGIN, error);
+	const bool exists = status == STATUS_OK && !store->output.in_order && !store->output.created;
+	store->replaces = exists && !resume;
+	if (exists && resume)
 		status = resume_old(store, error);
 	if (status != STATUS_OK)
 		store_close(store);
@@ -223,7 +213,7 @@ bool store_has(const struct store *store, const struct result_source *source, co
 		char *const *row = store->old.row[i];
 		if (strcmp(row[RESULT_PATH], source->path))
 			break;
-		if (is_current(row, source) && (!ndf || !strcmp(row[RESULT_NDF], ndf)))
+		if (is_current(row, source) && !store->doubtful[i] && (!ndf || !strcmp(row[RESULT_NDF], ndf)))
 			return true;
 	}
 	return false;
@@ -234,22 +224,22 @@ void store_drop_stale(struct store *store, const struct result_source *source)
 	for (size_t i = first_old(store, source->path); i < store->old.n_rows; i++) {
 		if (strcmp(store->old.row[i][RESULT_PATH], source->path))
 			break;
-		store->stale[i] = !is_current(store->old.row[i], source);
+		store->stale[i] |= store->doubtful[i] || !is_current(store->old.row[i], source);
 	}
 }
 
 /* Appends a line with one write, or nothing of it. */
-static enum status append_line(struct store *store, char *const *row, struct error *error)
+static enum status append_line(const struct store *store, int fd, char *const *row, struct error *error)
 {
 	size_t size;
 	char *text = row_text(row, &size);
 	if (!text)
 		return cannot(error, "write", store->path, ENOMEM);
-	const off_t before = store->regular ? lseek(store->fd, 0, SEEK_END) : -1;
+	const off_t before = store->output.in_order ? -1 : lseek(fd, 0, SEEK_END);
 	size_t written = 0;
 	int errnum = 0;
 	while (written < size && !errnum) {
-		const ssize_t n = write(store->fd, text + written, size - written);
+		const ssize_t n = write(fd, text + written, size - written);
 		if (n > 0)
 			written += (size_t)n;
 		else if (errno != EINTR)
@@ -258,38 +248,61 @@ static enum status append_line(struct store *store, char *const *row, struct err
 	free(text);
 	if (!errnum)
 		return STATUS_OK;
-	if (before >= 0 && ftruncate(store->fd, before)) {
+	if (before >= 0 && ftruncate(fd, before)) {
 		/* What is left of the line is what a kill would leave: --resume cuts it off. */
 	}
 	return cannot(error, "write", store->path, errnum);
 }
 
-/* Moves an older table out of the way, for the first row. */
-static enum status replace_old(struct store *store, struct error *error)
+/* Puts a new table, of a header and perhaps a row, in the place of an older file, which becomes FILE~: at no moment is
+ * there none, and where there is no room for a row the older one stays. */
+static enum status replace_old(struct store *store, char *const *row, struct error *error)
 {
-	close(store->fd);
-	store->fd = -1;
-	store->replaces = false;
-	const enum status status = back_up(store->path, false, error);
-	store->created = status == STATUS_OK;
-	return status != STATUS_OK ? status : open_table(store, O_WRONLY | O_CREAT, error);
+	char *name;
+	const int fd = output_new_file(&store->output, &name);
+	if (fd < 0)
+		return output_failed(&store->output, errno, error);
+	enum status status = append_line(store, fd, NULL, error);
+	if (status == STATUS_OK && row)
+		status = append_line(store, fd, row, error);
+	if (status == STATUS_OK)
+		status = output_back_up(&store->output, error);
+	if (status == STATUS_OK) {
+		const int errnum = output_replace(&store->output, name, fd);
+		if (errnum)
+			status = output_failed(&store->output, errnum, error);
+	}
+	if (status != STATUS_OK) {
+		close(fd);
+		unlink(name);
+	}
+	free(name);
+	store->replaces = store->replaces && status != STATUS_OK;
+	store->headed = status == STATUS_OK;
+	return status;
 }
 
 enum status store_begin(struct store *store, struct error *error)
 {
-	enum status status = store->replaces ? replace_old(store, error) : STATUS_OK;
-	if (!store->headed && status == STATUS_OK) {
-		status = append_line(store, NULL, error);
-		store->headed = status == STATUS_OK;
-	}
+	if (store->replaces)
+		return replace_old(store, NULL, error);
+	if (store->headed)
+		return STATUS_OK;
+	const enum status status = append_line(store, store->output.fd, NULL, error);
+	store->headed = status == STATUS_OK;
 	return status;
 }
 
 enum status store_append(struct store *store, const struct csv_table *rows, struct error *error)
 {
-	enum status status = rows->n_rows ? store_begin(store, error) : STATUS_OK;
-	for (size_t i = 0; i < rows->n_rows && status == STATUS_OK; i++)
-		status = append_line(store, rows->row[i], error);
+	size_t i = 0;
+	enum status status = STATUS_OK;
+	if (rows->n_rows && store->replaces)
+		status = replace_old(store, rows->row[i++], error);
+	else if (rows->n_rows)
+		status = store_begin(store, error);
+	for (; i < rows->n_rows && status == STATUS_OK; i++)
+		status = append_line(store, store->output.fd, rows->row[i], error);
 	return status;
 }
 
@@ -310,7 +323,7 @@ static char ***merged_rows(const struct store *store, const struct csv_table *ro
 
 enum status store_rewrite(struct store *store, const struct csv_table *rows, struct error *error)
 {
-	if (!store->regular || !store->headed)
+	if (store->output.in_order || !store->headed)
 		return STATUS_OK;
 	size_t n;
 	char ***merged = merged_rows(store, rows, &n);
@@ -320,14 +333,13 @@ enum status store_rewrite(struct store *store, const struct csv_table *rows, str
 	table.row = merged;
 	table.n_rows = n;
 	struct atomic_file file;
-	enum status status = atomic_file_open(&file, store->path, error);
+	enum status status = atomic_file_take(&file, &store->output, error);
 	if (status == STATUS_OK) {
+		file.keeps = n < store->old.n_rows + rows->n_rows;
 		csv_write(file.stream, &table);
-		status = n < store->old.n_rows + rows->n_rows ? back_up(store->path, true, error) : STATUS_OK;
-		if (status != STATUS_OK)
-			atomic_file_abort(&file);
-		else
-			status = atomic_file_commit(&file, error);
+		if (fflush(file.stream))
+			file.errnum = errno;
+		status = atomic_file_commit(&file, error);
 	}
 	free(merged);
 	return status;
@@ -336,12 +348,14 @@ enum status store_rewrite(struct store *store, const struct csv_table *rows, str
 void store_close(struct store *store)
 {
 	struct stat info;
-	const bool open = store->path && store->fd >= 0;
-	if (open && store->created && !store->headed && !fstat(store->fd, &info) && !info.st_size)
-		unlink(store->path);
-	if (open)
-		close(store->fd);
+	const struct output *output = &store->output;
+	const bool empty = output->path && output->created && !store->headed && output_is_there(output) &&
+			   !fstat(output->fd, &info) && !info.st_size;
+	if (empty)
+		unlink(output->target);
+	output_close(&store->output);
 	csv_table_free(&store->old);
 	free(store->stale);
-	*store = (struct store){.fd = -1};
+	free(store->doubtful);
+	*store = (struct store){.output = {.fd = -1}};
 }

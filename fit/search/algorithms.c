@@ -112,10 +112,8 @@ static double error_at(struct run *r, const double x[], struct shape *shape, str
 	for (int d = 0; d < r->dims; d++)
 		inside[d] = fmin(fmax(x[d], r->lo[d]), r->hi[d]);
 	*shape = space_shape(&r->space, inside);
-	if (!r->algorithm->joint) {
-		objective_jump(&r->objective, shape);
+	if (!r->algorithm->joint)
 		return objective_eval(&r->objective, shape, 1e-6, false, linear);
-	}
 	read_factors(o, false, &factor, linear->kd);
 	read_factors(o, true, &factor, linear->ks);
 	linear->error = objective_error(&r->objective, shape, linear->kd, linear->ks);

@@ -55,11 +55,12 @@ static enum status check_arguments(const struct fit_context *context, const stru
 			"entries");
 	if (!criterion_equal(made_for, asked))
 		return error_set(error, STATUS_DOMAIN,
-				 "the context is for gaf %s, weight %s, bins %s, max_theta %g: the options say %s, %s, "
-				 "%s, %g",
+				 "the context is for gaf %s, weight %s, bins %s, max_theta %g, zero_is_missing %d: the "
+				 "options say %s, %s, %s, %g, %d",
 				 gaf_name(made_for->gaf), weight_name(made_for->weight), bins_name(made_for->bins),
-				 made_for->max_theta, gaf_name(asked->gaf), weight_name(asked->weight),
-				 bins_name(asked->bins), asked->max_theta);
+				 made_for->max_theta, made_for->zero_is_missing, gaf_name(asked->gaf),
+				 weight_name(asked->weight), bins_name(asked->bins), asked->max_theta,
+				 asked->zero_is_missing);
 	return STATUS_OK;
 }
 

@@ -114,8 +114,8 @@ static int sample_values(const struct run *r, const struct state *s, size_t n, i
 
 	for (int c = 0; c < MERL_CHANNELS; c++) {
 		const float *value = sample_set_value(t, block, c) + n % KERNEL_BLOCK;
-		const float per_D = (float)s->linear.ks[c] * lobe_per_D(r, s, n, row),
-			    below = (float)(s->linear.kd[c] / M_PI) * t->w[n];
+		const float per_D = (float)(s->linear.ks[c] * t->unit) * lobe_per_D(r, s, n, row),
+			    below = (float)(s->linear.kd[c] / M_PI * t->unit) * t->w[n];
 
 		for (int a = 0; a < members && per_D > 0; a++)
 			wanted[count++] = (struct weighted_value){(value[a * KERNEL_BLOCK] - below) / per_D, per_D};

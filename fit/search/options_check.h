@@ -5,8 +5,8 @@
 
 #include "fit/error/options.h"
 
-/* The most that may be asked for. */
-enum { FIT_THREADS_MAX = 1024, FIT_STARTS_MAX = 100000 };
+/* The most starts that may be asked for; of threads, FIT_THREADS_MAX. */
+enum { FIT_STARTS_MAX = 100000 };
 #define FIT_TIME_MAX_S 1e6
 
 /* Rules that take more than one option to break. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/sources/batch.h"
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/progress.h"
@@ -15,7 +15,7 @@
 
 enum {
 	TICK_MS = 150, /* how often the progress line is drawn and Ctrl-C checked for, while nothing else happens */
-	CONTEXTS = 2,  /* 180 and 360 entries along phi_d */
+	CONTEXTS = 3,  /* scattered entries, 180 and 360 along phi_d */
 	CONTEXT_PHI = 180,
 };
 
@@ -61,13 +61,16 @@ void batch_free(struct batch *batch)
 
 struct result_source batch_source(const struct batch *batch, const struct batch_file *file)
 {
-	return (struct result_source){file->path, file->unread ? NULL : file->input, batch->options_text};
+	return (struct result_source){.path = file->path,
+				      .input = file->unread ? NULL : file->input,
+				      .options = batch->options_text,
+				      .suspects = file->words};
 }
 
 /* The context for this kind of table, made by the first thread that needs it. */
 static enum status get_context(struct run *run, int n_phi_d, const struct fit_context **context)
 {
-	struct fit_context **shared = &run->context[n_phi_d != CONTEXT_PHI];
+	struct fit_context **shared = &run->context[n_phi_d / CONTEXT_PHI];
 	enum status status = STATUS_OK;
 	pthread_mutex_lock(&run->lock);
 	if (!*shared)
@@ -122,15 +125,19 @@ static enum status process(struct run *run, struct batch_file *file)
 		fit.trace = trace_note;
 		fit.trace_data = &file->trace;
 	}
-	enum status status = merl_read(file->path, fit.threads, &measurement, &file->error);
+	const struct read_options reading = options_reading(run->batch->options, fit.threads);
+	enum status status = measurement_read(file->path, &reading, &measurement, &file->error);
 	file->unread = status == STATUS_IO || status == STATUS_NO_MEMORY;
 	if (status == STATUS_OK) {
 		result_input(file->input, &measurement);
 		const struct result_source source = batch_source(run->batch, file);
 		if (run->batch->store)
 			drop_known(run->batch, &source, &fit);
-		if (fit.n_ndf > 0)
+		if (fit.n_ndf > 0) {
+			suspects_find(&measurement, &fit.criterion, &file->suspects);
+			suspects_words(&file->suspects, file->words);
 			status = fit_samples(run, file, &measurement, &fit);
+		}
 		measurement_free(&measurement);
 		if (status != STATUS_OK && status != STATUS_INTERRUPTED) {
 			char name[TEXT_QUOTE_SIZE];
@@ -187,6 +194,15 @@ static void *work(void *argument)
 	return NULL;
 }
 
+static void report_suspects(const struct batch_file *file)
+{
+	char name[TEXT_QUOTE_SIZE], text[SUSPECTS_TEXT];
+	if (!file->suspects.found)
+		return;
+	text_quote(file->path, name, sizeof name);
+	report_error("'%s' looks wrong: %s", name, suspects_explain(&file->suspects, text));
+}
+
 static void wait_a_tick(struct run *run)
 {
 	struct timespec until;
@@ -217,6 +233,7 @@ static bool hand_on(struct run *run, size_t *n_failed)
 		progress.done = next;
 		file->done = true;
 		*n_failed += file->failed;
+		report_suspects(file);
 		if (file->failed)
 			report_error("%s", file->error.text);
 		if (!stopped && batch->done && !batch->done(batch->user, file)) {

@@ -5,6 +5,7 @@
 
 #include "fit/cli/files.h"
 #include "fit/cli/options.h"
+#include "fit/error/suspects.h"
 #include "fit/results/store.h"
 #include "fit/results/trace.h"
 
@@ -12,6 +13,8 @@
 struct batch_file {
 	const char *path;
 	char input[RESULT_INPUT_SIZE]; /* "" until it is read */
+	struct suspects suspects;      /* what looks wrong with it; of a file that is fitted */
+	char words[SUSPECTS_WORDS];    /* the same as a cell of its rows */
 	bool unread;                   /* it could not be read at all: its bytes are unknown */
 	struct csv_table rows;         /* new rows: none for NDFs that the store has, a failure's row per NDF */
 	struct trace trace;            /* if the options want one */

@@ -1,14 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/sources/materials.h"
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
+#include "data_readers/resample.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/files.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/output_directory.h"
+#include "fit/results/contradiction.h"
 #include "fit/results/store.h"
 #include "fit/sources/batch.h"
 
+#include <ctype.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,24 +68,60 @@ static char plain(char c, bool first)
 	return '_';
 }
 
-/* Names that become the same file name, or differ only in case, are distinguished by a number. */
-static void name_files(struct materials *materials)
+/* A file name that is in use, whatever the case of its letters. */
+struct used_name {
+	const char *name; /* NULL: a free place of the table */
+	size_t number;    /* the last that was put behind it to tell another name from it */
+};
+
+/* A hash table of the file names in use: at least half of its places, a power of two, are free. */
+struct used_names {
+	struct used_name *place;
+	size_t n_places;
+};
+
+static struct used_name *used_name_find(const struct used_names *used, const char *name)
 {
-	enum { NUMBER_ROOM = 24 };
-	for (size_t i = 0; i < materials->n; i++) {
-		struct material *m = &materials->material[i];
-		size_t length = 0;
-		for (const char *c = m->name; *c && length < MATERIAL_FILE_NAME_SIZE - NUMBER_ROOM; c++, length++)
-			m->file_name[length] = plain(*c, length == 0);
-		if (length == 0)
-			m->file_name[length++] = '_';
-		for (size_t k = 0, number = 1; k < i; k++) {
-			if (strcasecmp(m->file_name, materials->material[k].file_name))
-				continue;
-			snprintf(m->file_name + length, NUMBER_ROOM, "-%zu", ++number);
-			k = (size_t)-1; /* the new name may be in use as well */
-		}
+	uint64_t hash = 0xcbf29ce484222325u;
+	for (const char *c = name; *c; c++)
+		hash = (hash ^ (uint64_t)tolower((unsigned char)*c)) * 0x100000001b3u;
+	for (size_t at = (size_t)(hash ^ hash >> 32);; at++) {
+		struct used_name *place = &used->place[at & (used->n_places - 1)];
+		if (!place->name || !strcasecmp(place->name, name))
+			return place;
 	}
+}
+
+enum { NUMBER_ROOM = 24 };
+
+static void name_file(struct material *m, const struct used_names *used)
+{
+	size_t length = 0;
+	for (const char *c = m->name; *c && length < MATERIAL_FILE_NAME_SIZE - NUMBER_ROOM; c++, length++)
+		m->file_name[length] = plain(*c, length == 0);
+	if (length == 0)
+		m->file_name[length++] = '_';
+	struct used_name *same = used_name_find(used, m->file_name), *place = same;
+	while (place->name) {
+		snprintf(m->file_name + length, NUMBER_ROOM, "-%zu", ++same->number);
+		place = used_name_find(used, m->file_name); /* the new name may be in use as well */
+	}
+	*place = (struct used_name){m->file_name, 1};
+}
+
+/* Names that become the same file name, or differ only in case, are distinguished by a number. */
+static enum status name_files(struct materials *materials)
+{
+	struct used_names used = {.n_places = 16};
+	while (used.n_places < 2 * materials->n)
+		used.n_places *= 2;
+	used.place = calloc(used.n_places, sizeof *used.place);
+	if (!used.place)
+		return STATUS_NO_MEMORY;
+	for (size_t i = 0; i < materials->n; i++)
+		name_file(&materials->material[i], &used);
+	free(used.place);
+	return STATUS_OK;
 }
 
 static enum status group_rows(struct materials *materials)
@@ -99,11 +139,27 @@ static enum status group_rows(struct materials *materials)
 		}
 		materials->material[materials->n - 1].n_rows++;
 	}
-	name_files(materials);
-	return STATUS_OK;
+	return name_files(materials);
 }
 
 /* Where rows come from */
+
+/* Whether none of these files is one that is written into DIR itself. Returns -1, or the exit code to end with; what is
+ * wrong is then reported. */
+static int check_directory(const struct options *options, char *const *path, size_t n)
+{
+	static const char *const written[] = {"fits.csv", "errors.csv", "index.html"};
+	struct error error;
+	enum status status = STATUS_OK;
+	for (size_t i = 0; i < sizeof written / sizeof *written && status == STATUS_OK; i++)
+		status = output_directory_spares(options->output, written[i], path, (int)n, &error);
+	if (status == STATUS_DOMAIN)
+		return options_usage(options->command, "%s", error.text);
+	if (status == STATUS_OK)
+		return -1;
+	report_error("%s", error.text);
+	return EXIT_FAILED;
+}
 
 static int read_rows(struct csv_table *rows, const struct options *options)
 {
@@ -116,14 +172,21 @@ static int read_rows(struct csv_table *rows, const struct options *options)
 	if (options->n_paths > 1)
 		return options_usage(options->command, "expected one table and nothing beside it, found %d paths",
 				     options->n_paths);
-	if (csv_table_read(rows, options->path[0], RESULT_STATUS + 1, NULL, &error) == STATUS_OK) {
-		if (rows->n_rows)
-			return EXIT_DONE;
+	if (csv_table_read(rows, options->path[0], RESULT_STATUS + 1, NULL, &error) == STATUS_OK &&
+	    contradiction_check(rows, options->path[0], &error) == STATUS_OK) {
+		int wrong = -1;
+		for (size_t i = 0; i < rows->n_rows && wrong < 0; i++)
+			wrong = check_directory(options, &rows->row[i][RESULT_PATH], 1);
+		if (wrong >= 0)
+			csv_table_free(rows); /* nothing is shown */
+		if (wrong >= 0 || rows->n_rows)
+			return wrong < 0 ? EXIT_DONE : wrong;
 		char name[TEXT_QUOTE_SIZE];
 		text_quote(options->path[0], name, sizeof name);
 		error_set(&error, STATUS_NO_DATA, "'%s' has no rows to show", name);
 	}
 	report_error("%s", error.text);
+	csv_table_free(rows);
 	return EXIT_FAILED;
 }
 
@@ -134,16 +197,15 @@ static int fit_rows(struct csv_table *rows, const struct options *options)
 	const int bad = files_collect(&files, options->path, options->n_paths, options->recursive, options->cancel);
 	if (bad < 0)
 		return EXIT_FAILED;
+	int wrong = check_directory(options, files.path, files.n);
 	struct error error;
-	enum status status = output_directory_spares(options->output, "fits.csv", files.path, (int)files.n, &error);
-	if (status == STATUS_OK)
-		status = output_directory_accepts(options->output, "fits.csv", &error);
-	if (status != STATUS_OK) {
-		files_free(&files);
-		if (status == STATUS_DOMAIN)
-			return options_usage(options->command, "%s", error.text);
+	if (wrong < 0 && output_directory_accepts(options->output, "fits.csv", &error) != STATUS_OK) {
 		report_error("%s", error.text);
-		return EXIT_FAILED;
+		wrong = EXIT_FAILED;
+	}
+	if (wrong >= 0) {
+		files_free(&files);
+		return wrong;
 	}
 	if (batch_init(&batch, options, &files) != STATUS_OK) {
 		files_free(&files);
@@ -225,7 +287,7 @@ static enum status read_models(const struct material *material, int threads, str
 		data->n++;
 		const enum status status = result_model(row, &fit->model, &fit->options, &fit->pwl, &why);
 		if (status != STATUS_OK)
-			return error_set(error, status, "cannot show '%s', %.16s: %.200s", name, fit->ndf, why.text);
+			return error_set(error, status, "cannot show '%s': %.200s", name, why.text);
 	}
 	if (data->n == 0)
 		return error_set(error, STATUS_NO_DATA, "cannot show '%s': it has no fit", name);
@@ -236,7 +298,8 @@ static enum status read_samples(const struct material *material, int threads, st
 				struct error *error)
 {
 	char *const *row = material->row[0];
-	enum status status = merl_read(row[RESULT_PATH], threads, measurement, error);
+	const struct read_options reading = result_reading(row, threads);
+	enum status status = measurement_read(row[RESULT_PATH], &reading, measurement, error);
 	if (status != STATUS_OK)
 		return status;
 	status = result_check_input(row[RESULT_INPUT], measurement, row[RESULT_PATH], error);
@@ -251,6 +314,9 @@ enum status material_read(const struct material *material, int threads, struct m
 	enum status status = read_models(material, threads, data, error);
 	if (status == STATUS_OK)
 		status = read_samples(material, threads, &data->measurement, error);
+	if (status == STATUS_OK &&
+	    measurement_fill(&data->measurement, data->fit[0].options.criterion.bins, threads) != STATUS_OK)
+		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
 	if (status != STATUS_OK)
 		material_data_free(data);
 	return status;

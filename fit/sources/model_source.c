@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/sources/model_source.h"
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/export/model_json.h"
 
@@ -89,7 +89,8 @@ static struct source_model *add(struct model_source *source, const struct option
 		return NULL;
 	source->model = models;
 	struct source_model *model = &models[source->n];
-	*model = (struct source_model){.fit = options->fit, .error = NAN};
+	*model = (struct source_model){
+		.fit = options->fit, .error = NAN, .reading = options_reading(options, options->fit.threads)};
 	model->material = material ? strdup(material) : NULL;
 	if (material && !model->material)
 		return NULL;
@@ -143,6 +144,7 @@ static enum status add_row(const struct options *options, char *const *row, size
 		return error_set(error, status, "'%s' row %zu: %.200s", name, number, why.text);
 	}
 	model->error = result_number(row, RESULT_ERROR);
+	model->reading = result_reading(row, model->fit.threads);
 	snprintf(model->input, sizeof model->input, "%s", row[RESULT_INPUT]);
 	return !*row[RESULT_PATH] || set_path(model, row[RESULT_PATH]) ? STATUS_OK : no_memory(error);
 }
@@ -213,13 +215,14 @@ static enum status fit_file(const struct options *options, const char *path, con
 	struct fit_context *context = NULL;
 	struct fit_result result[FIT_NDFS_MAX];
 	struct error why = {""};
-	enum status status = merl_read(path, options->fit.threads, &source->measurement, error);
+	const struct read_options reading = options_reading(options, options->fit.threads);
+	enum status status = measurement_read(path, &reading, &source->measurement, error);
 	if (status != STATUS_OK)
 		return status;
 	status = fit_context_new(&context, source->measurement.n_phi_d, &options->fit);
-	if (status != STATUS_OK)
+	if (status != STATUS_OK && !why.text[0])
 		error_set(&why, status, "%s", status_str(status));
-	else
+	if (status == STATUS_OK)
 		status = fit_run(context, &source->measurement, &options->fit, result, &why);
 	fit_context_free(context);
 	if (status == STATUS_OK)

@@ -22,6 +22,7 @@ struct source_model {
 	char *material; /* of the row or the file; NULL: given parameters without a file */
 	char *path;     /* the MERL file that it was fitted to, as the row has it; NULL: none, or not known */
 	char input[RESULT_INPUT_SIZE]; /* size and hash of that file, as the row has them; "": not known */
+	struct read_options reading;   /* how that file was read */
 	size_t row;                    /* SOURCE_ROWS: number of its row in the table, from 1; else 0 */
 };
 

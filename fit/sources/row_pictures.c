@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/sources/row_pictures.h"
-#include "data_readers/merl.h"
+#include "data_readers/measurement_read.h"
+#include "data_readers/resample.h"
 #include "data_readers/text_quote.h"
 
 #include <math.h>
@@ -68,7 +69,8 @@ static enum status read_samples(const struct models *m, char **const *rows, cons
 	const char *path = rows[0][RESULT_PATH];
 	if (!*path)
 		return cannot(rows[0], STATUS_NO_DATA, "the table has no path of its file", error);
-	enum status status = merl_read(path, options->threads, measurement, error);
+	const struct read_options reading = result_reading(rows[0], options->threads);
+	enum status status = measurement_read(path, &reading, measurement, error);
 	if (status != STATUS_OK)
 		return status;
 	for (int i = 0; i < m->n && status == STATUS_OK; i++)
@@ -87,7 +89,10 @@ static enum status render(const struct models *m, char **const *rows, const stru
 	enum status status = read_samples(m, rows, options, &measurement, error);
 	if (status != STATUS_OK)
 		return status;
-	status = pictures_render(&measurement, m->bins, m->shown, m->n, SAMPLING_VISIBLE, light, &sphere, pictures);
+	status = measurement_fill(&measurement, m->bins, options->threads);
+	if (status == STATUS_OK)
+		status = pictures_render(&measurement, m->bins, m->shown, m->n, SAMPLING_VISIBLE, light, &sphere,
+					 pictures);
 	measurement_free(&measurement);
 	return status != STATUS_OK ? cannot(rows[0], status, status_str(status), error) : STATUS_OK;
 }

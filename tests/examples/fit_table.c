@@ -10,7 +10,8 @@ static volatile int stop;
 static void show(void *limit, const struct stdfit_step *step)
 {
 	fprintf(stderr, "%s: %ld evaluations, error %.4f\n", step->stage, step->evaluations, step->error);
-	stop = step->evaluations >= *(const long *)limit;
+	if (step->evaluations >= *(const long *)limit)
+		__atomic_store_n(&stop, 1, __ATOMIC_RELAXED); /* other threads of the fit read it */
 }
 
 /* What a measurement would give: sigma 0.25, n 1.5. */

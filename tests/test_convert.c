@@ -1,0 +1,338 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Measurements as tables and as CSV of samples: the functions, and stdfit convert. */
+#include "data_readers/measurement_read.h"
+#include "data_readers/merl.h"
+#include "data_readers/resample.h"
+#include "data_readers/samples_csv.h"
+#include "fit/cli/files.h"
+#include "make_samples.h"
+#include "run_program.h"
+
+/* A material that changes slowly, and the program's options for it. */
+#define MODEL "--ndf ggx --sigma 0.4 --ior 1.5 --kd 0.31,0.12,0.047 --ks 0.42,0.63,0.77"
+
+static struct cook_torrance smooth_model(void)
+{
+	return make_model("ggx", 0.4, 2, 1.5);
+}
+
+static struct measurement resampled(const struct measurement *from, int n_phi_d, enum gaps gaps, int threads,
+				    struct resampled *result)
+{
+	struct measurement table;
+	assert_int_equal(measurement_resample(from, BINS_NODE, n_phi_d, gaps, threads, &table, result), STATUS_OK);
+	assert_null(table.scattered);
+	assert_int_equal(table.n_phi_d, n_phi_d);
+	return table;
+}
+
+static void check_same(const struct measurement *a, const struct measurement *b)
+{
+	assert_int_equal(measurement_count(a), measurement_count(b));
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		assert_memory_equal(a->value[c], b->value[c], measurement_count(a) * sizeof(float));
+}
+
+/* Tables */
+
+static void a_table_stays_itself(void **state)
+{
+	(void)state;
+	const struct cook_torrance model = smooth_model();
+	struct measurement half = make_sparse_table(&model, 180, BINS_NODE, 0.1, 7);
+	struct resampled result;
+	struct measurement same = resampled(&half, 180, GAPS_MASKED, 1, &result);
+	check_same(&same, &half);
+	assert_false(result.symmetrised);
+	struct measurement whole = resampled(&half, 360, GAPS_MASKED, 1, NULL);
+	struct measurement back = resampled(&whole, 180, GAPS_MASKED, 1, &result);
+	assert_true(result.symmetrised);
+	check_same(&back, &half);
+	measurement_free(&same);
+	measurement_free(&whole);
+	measurement_free(&back);
+	measurement_free(&half);
+}
+
+static void both_orders_have_their_mean(void **state)
+{
+	(void)state;
+	struct measurement whole;
+	assert_int_equal(measurement_alloc(&whole, 360), STATUS_OK);
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		whole.value[c][measurement_at(360, 3, 4, 5)] = 1;
+		whole.value[c][measurement_at(360, 3, 4, 185)] = 4;
+		whole.value[c][measurement_at(360, 3, 4, 186)] = 7;
+	}
+	struct measurement half = resampled(&whole, 180, GAPS_MASKED, 1, NULL);
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		check_abs((double)half.value[c][measurement_at(180, 3, 4, 5)], 2.5, 0, "the mean of both");
+		check_abs((double)half.value[c][measurement_at(180, 3, 4, 6)], 7, 0, "the one that is there");
+		assert_true(isnan(half.value[c][measurement_at(180, 3, 4, 7)]));
+	}
+	measurement_free(&half);
+	measurement_free(&whole);
+}
+
+static void a_table_has_two_values_of_phi(void **state)
+{
+	(void)state;
+	const struct cook_torrance model = smooth_model();
+	struct measurement half = make_sparse_table(&model, 180, BINS_NODE, 0, 90), table;
+	assert_int_equal(measurement_resample(&half, BINS_NODE, 90, GAPS_MASKED, 1, &table, NULL), STATUS_DOMAIN);
+	measurement_free(&half);
+}
+
+/* Samples */
+
+static void samples_of_a_table_come_back(void **state)
+{
+	(void)state;
+	enum { STEP = 45 };
+	const struct cook_torrance model = smooth_model();
+	struct measurement table = make_sparse_table(&model, 180, BINS_NODE, 0, STEP), samples;
+	struct error error;
+	size_t n, at = 0;
+	assert_int_equal(samples_csv_write("come-back.csv", &table, BINS_NODE, &n, &error), STATUS_OK);
+	assert_int_equal(measurement_read("come-back.csv", NULL, &samples, &error), STATUS_OK);
+	assert_int_equal(samples.scattered->n, n);
+	struct measurement again = resampled(&samples, 180, GAPS_MASKED, 2, NULL);
+	for (int i = 0; i < MERL_THETA_H; i++)
+		for (int j = 0; j < MERL_THETA_D; j++)
+			for (int k = 0; k < 180; k += STEP) {
+				const size_t e = measurement_at(180, i, j, k);
+				struct vec3 wi, wo;
+				halfdiff_trig_dirs(bins_trig(BINS_NODE, i, j, k), &wi, &wo);
+				if (isnan(table.value[0][e]) || fmin(wi.z, wo.z) < 2e-6)
+					continue;
+				check_abs((double)samples.scattered->value[1][at++], (double)table.value[1][e], 0,
+					  "a sample");
+				/* i = 0 or j = 0 is one direction for all k. */
+				check_rel((double)again.value[1][e], (double)table.value[1][e], 1e-5, "an entry");
+			}
+	assert_int_equal(at, n);
+	measurement_free(&again);
+	measurement_free(&samples);
+	measurement_free(&table);
+}
+
+static void a_merl_file_takes_no_samples(void **state)
+{
+	(void)state;
+	const struct cook_torrance model = smooth_model();
+	struct measurement samples = scatter(&model, 10, 80, false);
+	struct error error;
+	assert_int_equal(merl_write("none.binary", &samples, &error), STATUS_UNSUPPORTED);
+	assert_true(access("none.binary", F_OK) != 0);
+	measurement_free(&samples);
+}
+
+/* The program */
+
+/* Samples of the model in three formats, a few thousand each. */
+static void make_files(void)
+{
+	const struct cook_torrance model = smooth_model();
+	struct measurement samples = scatter(&model, 300, 85, false);
+	struct error error;
+	size_t n;
+	for (size_t e = 0; e < samples.scattered->n; e++)
+		samples.scattered->solid_angle[e] = 1e-3f;
+	assert_int_equal(samples_csv_write("paint.csv", &samples, BINS_NODE, &n, &error), STATUS_OK);
+	measurement_free(&samples);
+	write_text("gray.dat", "#DIM 3 1\n#PARAM_IN RUSIN_TH_TD_PD\n#PARAM_OUT INV_STERADIAN\n"
+			       "0.1 0.2 0.3 1\n0.1 0.3 0.3 2\n1.5 1.5 0 3\n0.3 0.3 0.3 -1\n");
+	write_text("blue.brdf",
+		   "5\n400 500 520 540 700\n0.1 0 0.2 3 0 0 1 0 0\n0.1 0 0.3 3 1 1 1 1 1\n0.1 0 0.3 3 0 0 0 0 0\n");
+}
+
+static void convert_writes_samples_and_tables(void **state)
+{
+	(void)state;
+	make_files();
+	stdfit("convert paint.csv paint.binary");
+	expect_code(0);
+	expect_part(last.err, "entries of the table; lost: interpolated; ", __LINE__);
+	expect_part(last.err, " outside what was measured are -1; the mean of both orders of wi and wo", __LINE__);
+	assert_int_equal(count_lines(last.err), 1);
+	stdfit("info paint.binary --table");
+	expect_out("format               merl\n");
+	stdfit("convert paint.binary again.csv -q");
+	expect_code(0);
+	assert_string_equal(last.err, "");
+	stdfit("convert gray.dat gray.csv");
+	expect_part(last.err, "2 samples; lost: 1 negative left out; 1 at or below the horizon left out\n", __LINE__);
+	stdfit("convert blue.brdf blue.csv");
+	expect_part(last.err,
+		    "2 samples; lost: 1 not measured; 1 out of gamut, their negative part set to 0; 5 wavelengths "
+		    "became linear sRGB\n",
+		    __LINE__);
+	stdfit("convert --gamut mask blue.brdf blue.csv");
+	expect_part(last.err,
+		    "1 samples; lost: 1 not measured; 1 out of gamut left out; 5 wavelengths became linear sRGB\n",
+		    __LINE__);
+	stdfit("convert --quantity reflectance_factor gray.dat factor.csv -q");
+	shell("tail -n 1 factor.csv | cut -d, -f5");
+	assert_string_equal(last.out, "0.636619747\n");
+}
+
+static void info_tells_what_is_in_a_file(void **state)
+{
+	(void)state;
+	make_files();
+	stdfit("info gray.dat blue.brdf --table");
+	expect_code(0);
+	expect_out("theta_h              \n");
+	expect_out("valid                2\n");
+	expect_out("max_b                2\n");
+	expect_out("format               alta\n");
+	expect_out("symmetry             isotropic\n");
+	expect_out("channels             1\n");
+	expect_out("left_out             negative: 1; at or below the horizon: 1\n");
+	expect_out("suspects             out of gamut, set to 0: 1\n");
+	expect_out("channels             5\n");
+	expect_out("left_out             not measured: 1\n");
+	stdfit("info --gamut mask blue.brdf --table");
+	expect_out("left_out             not measured: 1; out of gamut: 1\n");
+}
+
+static void a_directory_has_the_known_files(void **state)
+{
+	(void)state;
+	make_files();
+	shell("mkdir -p mixed; cp gray.dat blue.brdf mixed; cp paint.csv mixed/paint.CSV; cd mixed; echo a,b "
+	      ">table.csv; "
+	      "echo hello >notes.txt; echo hello >notes.dat; echo analytic >shader.brdf");
+	atomic_bool cancel = false;
+	struct files files;
+	char *const path[] = {"mixed"};
+	assert_int_equal(files_collect(&files, path, 1, false, &cancel), 0);
+	assert_int_equal(files.n, 3);
+	static const char *const names[] = {"blue", "gray", "paint"};
+	for (size_t i = 0; i < 3; i++) {
+		char *material = result_material(files.path[i]);
+		assert_string_equal(material, names[i]);
+		free(material);
+	}
+	files_free(&files);
+	shell("mkdir -p other; cp mixed/notes* other");
+	stdfit("render other " MODEL " -q");
+	expect_error(1, "'other': no measurement of a known format in this directory");
+	stdfit("info mixed/notes.dat");
+	expect_error(1, "'mixed/notes.dat': ");
+	stdfit("info mixed/notes.txt");
+	expect_error(1, "'mixed/notes.txt': its format is not known: expected MERL table");
+}
+
+/* Writes samples of an STD lobe with 5 % noise as CSV: one value each, r, g and b, or a spectrum. */
+static void write_noisy(const char *path, const char *columns, int n_values)
+{
+	const struct cook_torrance model = make_model("std", 0.2, 2.5, 1.5);
+	struct measurement m = scatter(&model, 6000, 80, false);
+	FILE *file = fopen(path, "w");
+	unsigned seed = 11;
+	assert_non_null(file);
+	fprintf(file, "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,%s\n", columns);
+	for (size_t e = 0; e < m.scattered->n; e++) {
+		const struct vec3 i = m.scattered->wi[e], o = m.scattered->wo[e];
+		fprintf(file, "%.15g,%.15g,%.15g,%.15g,%.15g,%.15g", i.x, i.y, i.z, o.x, o.y, o.z);
+		for (int v = 0; v < n_values; v++) {
+			const int channel = n_values == 1 ? 1 : n_values == 3 ? v : (n_values - 1 - v) * 3 / n_values;
+			fprintf(file, ",%.9g",
+				(double)m.scattered->value[channel][e] * (1 + 0.05 * (2 * random_unit(&seed) - 1)));
+		}
+		fputc('\n', file);
+	}
+	assert_int_equal(fclose(file), 0);
+	measurement_free(&m);
+}
+
+static void noisy_samples_give_their_parameters_back(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *path, *columns;
+		int n_values;
+	} files[] = {{"noisy/gray.csv", "value", 1},
+		     {"noisy/rgb.csv", "r,g,b", 3},
+		     {"noisy/spectrum.csv", "420nm,460nm,500nm,540nm,580nm,620nm,660nm", 7}};
+	shell("mkdir noisy");
+	for (int i = 0; i < 3; i++)
+		write_noisy(files[i].path, files[i].columns, files[i].n_values);
+	stdfit("noisy -q -o noisy.csv");
+	expect_code(0);
+	struct csv_table table = read_table("noisy.csv");
+	assert_int_equal(table.n_rows, 9);
+	for (size_t i = 0; i < table.n_rows; i++) {
+		char *const *row = table.row[i];
+		if (strcmp(row[RESULT_NDF], "std") != 0)
+			continue;
+		check_rel(result_number(row, RESULT_SIGMA), 0.2, 0.02, row[RESULT_MATERIAL]);
+		check_rel(result_number(row, RESULT_GAMMA), 2.5, 0.06, row[RESULT_MATERIAL]);
+		check_rel(result_number(row, RESULT_IOR), 1.5, 0.03, row[RESULT_MATERIAL]);
+		if (!strcmp(row[RESULT_MATERIAL], "rgb"))
+			check_rel(result_number(row, RESULT_KD_R), 0.31, 0.01, "kd_r");
+		if (!strcmp(row[RESULT_MATERIAL], "gray"))
+			check_rel(result_number(row, RESULT_KD_R), 0.12, 0.01, "kd of the one channel");
+	}
+	csv_table_free(&table);
+	/* The tables of a batch with several formats are joined, resumed and compared as others are. */
+	stdfit("noisy -q --shard 1/2 -o one.csv");
+	stdfit("noisy -q --shard 2/2 -o two.csv");
+	stdfit("merge one.csv two.csv noisy -o joined.csv");
+	expect_code(0);
+	char *joined = without_seconds("joined.csv"), *whole = without_seconds("noisy.csv");
+	assert_string_equal(joined, whole);
+	free(joined);
+	free(whole);
+	stdfit("compare noisy.csv");
+	expect_code(0);
+	expect_out("\nspectrum,");
+	stdfit("compare noisy/gray.csv --ndf ggx,beckmann"); /* samples, no table of results */
+	expect_code(0);
+	expect_out("\ngray,");
+	stdfit("noisy/gray.csv -q --resume -o noisy.csv --quantity brdf_cos");
+	shell("grep -c 'quantity=brdf_cos' noisy.csv");
+	assert_string_equal(last.out, "3\n");
+}
+
+static void wrong_usage_is_refused(void **state)
+{
+	(void)state;
+	make_files();
+	stdfit("convert gray.dat");
+	expect_error(2, "expected IN and OUT, found 1 names");
+	stdfit("convert gray.dat a.csv b.csv");
+	expect_error(2, "expected IN and OUT, found 3 names");
+	stdfit("convert gray.dat a.txt");
+	expect_error(2, "expected OUT.csv or OUT.binary");
+	stdfit("convert paint.csv ./paint.csv");
+	expect_error(2, "OUT names a file that is to be read");
+	stdfit("convert gray.dat a.csv --phi 360");
+	expect_error(2, "--phi means nothing for a CSV");
+	stdfit("convert none.dat a.csv");
+	expect_error(1, "cannot read 'none.dat': No such file");
+	stdfit("convert gray.dat nowhere/a.csv");
+	expect_error(1, "cannot write 'nowhere/a.csv'");
+	stdfit("info gray.dat --quantity radiance");
+	expect_error(2, "expected one of file, brdf, brdf_cos, reflectance_factor");
+	stdfit("info gray.dat --gamut x");
+	expect_error(2, "expected one of clip, mask");
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_table_stays_itself),
+		cmocka_unit_test(both_orders_have_their_mean),
+		cmocka_unit_test(a_table_has_two_values_of_phi),
+		cmocka_unit_test(samples_of_a_table_come_back),
+		cmocka_unit_test(a_merl_file_takes_no_samples),
+		cmocka_unit_test(convert_writes_samples_and_tables),
+		cmocka_unit_test(info_tells_what_is_in_a_file),
+		cmocka_unit_test(a_directory_has_the_known_files),
+		cmocka_unit_test(noisy_samples_give_their_parameters_back),
+		cmocka_unit_test(wrong_usage_is_refused),
+	};
+	return cmocka_run_group_tests(tests, enter_directory, leave_directory);
+}
