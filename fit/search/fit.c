@@ -36,6 +36,9 @@ void fit_context_free(struct fit_context *context)
 	free(context);
 }
 
+static const char isotropic_table[] =
+	"a table over theta_h, theta_d and phi_d is isotropic: an anisotropic model needs scattered entries";
+
 /* Whether the options keep the rules, and the context is one for them and this measurement. */
 static enum status check_arguments(const struct fit_context *context, const struct measurement *measurement,
 				   const struct fit_options *options, struct error *error)
@@ -49,10 +52,7 @@ static enum status check_arguments(const struct fit_context *context, const stru
 		return error_set(error, STATUS_DOMAIN, "the context is for measurements of %d phi_d: this one has %d",
 				 context->geometry.n_phi_d, measurement->n_phi_d);
 	if (options->anisotropic && !measurement->scattered)
-		return error_set(
-			error, STATUS_DOMAIN,
-			"a table over theta_h, theta_d and phi_d is isotropic: an anisotropic fit needs scattered "
-			"entries");
+		return error_set(error, STATUS_DOMAIN, "%s", isotropic_table);
 	if (!criterion_equal(made_for, asked))
 		return error_set(error, STATUS_DOMAIN,
 				 "the context is for gaf %s, weight %s, bins %s, max_theta %g, zero_is_missing %d: the "
@@ -671,6 +671,8 @@ enum status fit_eval(const struct measurement *measurement, const struct cook_to
 	enum status status;
 
 	own.criterion.gaf = model->gaf;
+	if (model->ndf.sigma_x != model->ndf.sigma_y && !measurement->scattered)
+		return error_set(error, STATUS_DOMAIN, "%s", isotropic_table);
 	status = fit_criterion_check(&own, error);
 	if (status != STATUS_OK)
 		return status;

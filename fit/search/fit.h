@@ -83,7 +83,7 @@ MUST_CHECK enum status fit_run(const struct fit_context *context, const struct m
 MUST_CHECK enum status fit_estimate(const struct fit_context *context, const struct measurement *measurement,
 				    const struct fit_options *options, double *estimate, struct error *error);
 
-/* fit_eval - the metrics of a given model against a table, no fit. Of the options only criterion (but its gaf, which is the
+/* fit_eval - the metrics of a given model against a measurement, no fit; an anisotropic one wants scattered entries. Of the options only criterion (but its gaf, which is the
  * model's) and threads are read, and checked. Errors as of fit_run(). */
 MUST_CHECK enum status fit_eval(const struct measurement *measurement, const struct cook_torrance *model,
 				const struct fit_options *options, struct fit_metrics *metrics, struct error *error);
