@@ -30,6 +30,7 @@
 #define SEARCHES (FITS | BENCH)
 #define TABLES (FIT | COMPARE | BENCH)
 #define MODEL (EVAL | SYNTH)
+#define AXES (FIT | COMPARE)
 #define SOURCES (EXPORT | RENDER) /* a fit, a row or given parameters: model_source.h */
 #define AT(member) offsetof(struct options, member)
 
@@ -94,8 +95,13 @@ const struct option_spec option_specs[] = {
 	 FIT_IOR_MAX},
 	{"gamma", 0, KIND_GAMMA, SEARCHES, RECORDED, "G", "fix the shape gamma (STD: above 1.5; inf is Beckmann)",
 	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
-	{"sigma", 0, KIND_NUMBER, SEARCHES, RECORDED, "S", "fix the roughness", AT(fit.sigma), FIT_SIGMA_MIN,
-	 FIT_SIGMA_MAX},
+	{"sigma", 0, KIND_SIGMA, SEARCHES, RECORDED, "S|SX,SY", "fix the roughness; with --anisotropic along both axes",
+	 AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
+	{"anisotropic", 0, KIND_ON, AXES, RECORDED_ANISOTROPIC, NULL,
+	 "scattered entries: search sigma_x, sigma_y and the angle of their axes, too, from the isotropic fit on",
+	 AT(fit.anisotropic), 0, 0},
+	{"angle", 0, KIND_NUMBER, AXES, RECORDED_ANISOTROPIC, "DEG",
+	 "with --anisotropic: fix the azimuth of the axis of sigma_x", AT(fit.angle), -360, 360},
 	{"algorithm", 0, KIND_ALGORITHM, FIT, RECORDED_ALGORITHM, "NAME",
 	 "the search; others than the default search the full table with nlopt until --time is up, kd and ks solved "
 	 "for "
@@ -120,7 +126,11 @@ const struct option_spec option_specs[] = {
 	{"seed", 0, KIND_SEED, SEARCHES, RECORDED, "N", "seed of the random shapes", AT(fit.seed), 0, 0},
 	{"within", 0, KIND_PERCENT, FIT, RECORDED_WITHIN, "P%",
 	 "per material only the simplest model whose error is within P% of the best", AT(within), 0, 1000},
-	{"sigma", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "S", "roughness", AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
+	{"sigma", 0, KIND_NUMBER, SYNTH, NOT_RECORDED, "S", "roughness", AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
+	{"sigma", 0, KIND_SIGMA, EVAL, NOT_RECORDED, "S|SX,SY", "roughness, along both axes if two", AT(fit.sigma),
+	 FIT_SIGMA_MIN, FIT_SIGMA_MAX},
+	{"angle", 0, KIND_NUMBER, EVAL, NOT_RECORDED, "DEG", "azimuth of the axis of SX; 0 if not given", AT(fit.angle),
+	 -360, 360},
 	{"gamma", 0, KIND_GAMMA, MODEL, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann)",
 	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
 	{"ior", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "N", "index of refraction", AT(fit.ior), FIT_IOR_MIN, FIT_IOR_MAX},
@@ -270,6 +280,26 @@ static enum status parse_number(const struct option_spec *spec, const char *text
 	if (!*text || !csv_parse_number(text, &x) || !in_range(spec, x))
 		return expected_range(spec, error);
 	*value = x;
+	return STATUS_OK;
+}
+
+static enum status parse_sigma(const struct option_spec *spec, const char *text, struct fit_options *fit,
+			       struct error *error)
+{
+	char first[CSV_NUMBER_SIZE];
+	const size_t length = strcspn(text, ",");
+	if (length >= sizeof first)
+		return expected_range(spec, error);
+	memcpy(first, text, length);
+	first[length] = '\0';
+	double sigma, sigma_y = NAN;
+	enum status status = parse_number(spec, first, &sigma, error);
+	if (status == STATUS_OK && text[length])
+		status = parse_number(spec, text + length + 1, &sigma_y, error);
+	if (status != STATUS_OK)
+		return status;
+	fit->sigma = sigma;
+	fit->sigma_y = sigma_y;
 	return STATUS_OK;
 }
 
@@ -434,6 +464,8 @@ enum status option_parse(struct options *options, const struct option_spec *spec
 	case KIND_NUMBER:
 	case KIND_GAMMA:
 		return parse_number(spec, text, value, error);
+	case KIND_SIGMA:
+		return parse_sigma(spec, text, &options->fit, error);
 	case KIND_PERCENT:
 		return parse_percent(spec, text, value, error);
 	case KIND_RGB:
@@ -488,6 +520,11 @@ void option_write(FILE *file, const struct options *options, const struct option
 		break;
 	case KIND_SEED:
 		fprintf(file, "%" PRIu64, *(const uint64_t *)value);
+		break;
+	case KIND_SIGMA:
+		fputs(isnan(options->fit.sigma) ? "free" : csv_number(number, options->fit.sigma), file);
+		if (!isnan(options->fit.sigma_y))
+			fprintf(file, ",%s", csv_number(number, options->fit.sigma_y));
 		break;
 	case KIND_NUMBER:
 	case KIND_GAMMA:
@@ -549,7 +586,8 @@ static bool has_default(const struct options *defaults, const struct option_spec
 	if (spec->kind == KIND_INT)
 		return *(const int *)value >= spec->min;
 	/* A free number is a default of a fit; a model needs one. */
-	return spec->recorded != NOT_RECORDED || (spec->kind != KIND_NUMBER && spec->kind != KIND_GAMMA) ||
+	return spec->recorded != NOT_RECORDED ||
+	       (spec->kind != KIND_NUMBER && spec->kind != KIND_GAMMA && spec->kind != KIND_SIGMA) ||
 	       !isnan(*(const double *)value);
 }
 

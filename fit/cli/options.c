@@ -121,6 +121,8 @@ static bool is_recorded(const struct options *options, const struct option_spec 
 		return !isnan(options->within);
 	case RECORDED_GIVEN:
 		return options->given[spec - option_specs];
+	case RECORDED_ANISOTROPIC:
+		return options->fit.anisotropic;
 	case RECORDED_ALGORITHM:
 		return options->fit.algorithm;
 	default:
@@ -459,6 +461,11 @@ int options_check_fit(const struct options *options)
 	for (size_t i = 0; i < sizeof shape / sizeof *shape; i++)
 		if (!fit->specular && options_given(options, shape[i]))
 			return options_usage(options->command, "--%s means nothing with --no-specular", shape[i]);
+	if (!fit->anisotropic && (!isnan(fit->sigma_y) || !isnan(fit->angle)))
+		return options_usage(options->command, "--%s needs --anisotropic",
+				     isnan(fit->angle) ? "sigma SX,SY" : "angle");
+	if (fit->anisotropic && !isnan(fit->sigma) && isnan(fit->sigma_y))
+		return options_usage(options->command, "--sigma with --anisotropic takes SX,SY");
 	if (fit->fresnel == FRESNEL_NONE && options_given(options, "ior"))
 		return options_usage(options->command, "--ior means nothing with --fresnel none");
 	if (options_given(options, "gamma") && !any_has_gamma(fit))
@@ -572,7 +579,7 @@ const char *options_given_beside(const struct options *options, const char *cons
 /* An option for a term that the model does not have. */
 static int check_model(const struct options *options)
 {
-	static const char *const specular[] = {"sigma", "gamma", "ior", "k", "ndf", "gaf", "fresnel"};
+	static const char *const specular[] = {"sigma", "angle", "gamma", "ior", "k", "ndf", "gaf", "fresnel"};
 	const enum command command = options->command;
 	const struct ndf_class *ndf = options->fit.ndf[0];
 	if (options->fit.n_ndf != 1)
@@ -589,6 +596,8 @@ static int check_model(const struct options *options)
 				     ndf_has_gamma(ndf) ? "needs --gamma" : "has no --gamma");
 	if (options->fit.fresnel == FRESNEL_NONE && options_given(options, "ior"))
 		return options_usage(command, "--ior means nothing with --fresnel none");
+	if (isnan(options->fit.sigma_y) && options_given(options, "angle"))
+		return options_usage(command, "--angle needs --sigma SX,SY");
 	if (options->fit.fresnel != FRESNEL_CONDUCTOR && options_given(options, "k"))
 		return options_usage(command, "--k means nothing without --fresnel conductor");
 	return -1;
@@ -607,7 +616,12 @@ int options_model(const struct options *options, struct cook_torrance *model)
 	memcpy(model->kd, options->kd, sizeof model->kd);
 	memcpy(model->ks, options->ks, sizeof model->ks);
 	const double sigma = isnan(fit->sigma) ? 1 : fit->sigma, gamma = isnan(fit->gamma) ? 2 : fit->gamma;
-	const struct shape shape = {.sigma = sigma, .gamma = gamma};
+	struct shape shape = {.sigma = sigma, .gamma = gamma};
+	if (!isnan(fit->sigma_y)) {
+		shape.sigma = sqrt(sigma * fit->sigma_y);
+		shape.stretch = log(sigma / fit->sigma_y);
+		shape.angle = isnan(fit->angle) ? 0 : fit->angle;
+	}
 	if (shape_ndf(&shape, fit->ndf[0], fit->lambda, &model->ndf) != STATUS_OK)
 		return options_usage(options->command, "--ndf %s does not allow these parameters",
 				     ndf_name(fit->ndf[0]));

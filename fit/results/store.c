@@ -152,7 +152,7 @@ static enum status resume_old(struct store *store, struct error *error)
 		return foreign_columns(store->path, "resume", error);
 	store->headed = beginning == HEADER_WHOLE;
 	if (store->headed) {
-		const enum status status = csv_table_read(&store->old, store->path, RESULT_COLUMNS, &complete, error);
+		const enum status status = csv_table_read(&store->old, store->path, RESULT_LATER, &complete, error);
 		if (status != STATUS_OK)
 			return status;
 	}
