@@ -411,7 +411,8 @@ bool output_is_backup(const struct output *output)
 	return same;
 }
 
-int output_back_up(const struct output *output)
+/* 0 or errno. */
+static int back_up(const struct output *output)
 {
 	struct stat info;
 	if (output->in_order || stat(output->target, &info))
@@ -430,6 +431,17 @@ int output_back_up(const struct output *output)
 	free(name);
 	free(backup);
 	return errnum;
+}
+
+enum status output_back_up(const struct output *output, struct error *error)
+{
+	const int errnum = back_up(output);
+	if (!errnum)
+		return STATUS_OK;
+	char name[TEXT_QUOTE_SIZE];
+	text_quote(output->path, name, sizeof name);
+	return error_set(error, errnum == ENOMEM ? STATUS_NO_MEMORY : STATUS_IO, "cannot keep '%s' as FILE~: %s", name,
+			 strerror(errnum));
 }
 
 /* Renames, but not over a file that is there. */

@@ -48,8 +48,9 @@ MUST_CHECK enum status output_open(struct output *output, enum output_use use, s
 int output_new_file(const struct output *output, char **name);
 
 /* output_back_up - keeps the target, if it is there, as FILE~ beside it, too; an older FILE~ is replaced. The target
- * stays where it is at every moment: the backup is a hard link, or a copy where there are none. Returns 0 or errno. */
-int output_back_up(const struct output *output);
+ * stays where it is at every moment: the backup is a hard link, or a copy where there are none.
+ * Errors: STATUS_IO, STATUS_NO_MEMORY; they read "cannot keep 'path' as FILE~: reason". */
+MUST_CHECK enum status output_back_up(const struct output *output, struct error *error);
 
 /* output_is_backup - whether FILE~ and the target are one file, as a kill between backup and rename leaves them. */
 bool output_is_backup(const struct output *output);

@@ -265,10 +265,10 @@ static enum status replace_old(struct store *store, char *const *row, struct err
 	enum status status = append_line(store, fd, NULL, error);
 	if (status == STATUS_OK && row)
 		status = append_line(store, fd, row, error);
+	if (status == STATUS_OK)
+		status = output_back_up(&store->output, error);
 	if (status == STATUS_OK) {
-		int errnum = output_back_up(&store->output);
-		if (!errnum)
-			errnum = output_replace(&store->output, name, fd);
+		const int errnum = output_replace(&store->output, name, fd);
 		if (errnum)
 			status = output_failed(&store->output, errnum, error);
 	}
