@@ -87,12 +87,14 @@ static enum status read_comment(const char *text, struct layout *layout, struct 
 	return STATUS_OK;
 }
 
-/* Whether the name is a number with nm behind it. */
+/* Whether the name is a number of nanometres, with nm behind it or not. */
 static bool is_wavelength(const char *name, double *nm)
 {
-	if (!isdigit((unsigned char)*name) || !text_number(&name, nm))
+	const double least = 100, most = 100000;
+	if (!isdigit((unsigned char)*name) || !text_number(&name, nm) || !(*nm >= least && *nm <= most))
 		return false;
-	return !strcasecmp(line_skip_space((char *)name), "nm");
+	name = line_skip_space((char *)name);
+	return !*name || !strcasecmp(name, "nm");
 }
 
 /* The field of a name, or FIELDS. */
@@ -100,7 +102,8 @@ static int field_of(const char *name, struct layout *layout, double *unit)
 {
 	char plain[NAME_MAX_SIZE];
 	*unit = 1;
-	if (!strcasecmp(name, "incident_angle") || !strcasecmp(name, "measure_angle")) {
+	if (!strcasecmp(name, "incident_angle") || !strcasecmp(name, "incident angle") ||
+	    !strcasecmp(name, "measure_angle") || !strcasecmp(name, "measure angle")) {
 		layout->goniometer = true;
 		*unit = RADIAN;
 		return tolower((unsigned char)*name) == 'i' ? THETA_I : THETA_O;
