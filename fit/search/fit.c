@@ -85,7 +85,12 @@ static unsigned bounds_of(const struct fit_result *r, const struct fit_options *
 	unsigned bits = 0;
 
 	if (o->specular) {
-		if (isnan(o->sigma) && on_bound(m->ndf.sigma_x, FIT_SIGMA_MIN, FIT_SIGMA_MAX))
+		struct space space;
+
+		space_init(&space, o, m->ndf.class);
+		const double sigma = m->ndf.sigma_x / space_sigma_scale(&space, m->ndf.gamma);
+
+		if (isnan(o->sigma) && on_bound(sigma, FIT_SIGMA_MIN, FIT_SIGMA_MAX))
 			bits |= BOUND_SIGMA;
 		const struct ndf_param *gamma = ndf_has_gamma(m->ndf.class) ? ndf_param_at(m->ndf.class, 1) : NULL;
 

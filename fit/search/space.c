@@ -79,19 +79,31 @@ void space_init(struct space *s, const struct fit_options *o, const struct ndf_c
 		s->fixed = (struct shape){1, 2, 1.5, 0};
 		return;
 	}
+	if (isnan(o->sigma) && ndf_has_gamma(class) && ndf_has_lambda_forms(class))
+		s->of_std = class;
 	if (isnan(o->sigma))
 		add_dim(s, COORDINATE_SIGMA, FIT_SIGMA_MIN, FIT_SIGMA_MAX, &scan_sigma);
 	if (ndf_has_gamma(class) && isnan(o->gamma)) {
 		const struct ndf_param *gamma = ndf_param_at(class, 1);
-		const struct axis axis = gamma_axis(gamma->min, gamma->search_min, ndf_has_lambda_forms(class));
+		const bool student_t = ndf_has_lambda_forms(class);
 
-		s->least_gamma = gamma->min;
+		/* t-family's gamma goes down to 2, where its D degenerates, not to STD's 1.5. */
+		s->least_gamma = student_t ? gamma->search_min - (FIT_GAMMA_MIN - 1.5) : gamma->min;
+		const struct axis axis = gamma_axis(s->least_gamma, gamma->search_min, student_t);
+
 		add_dim(s, COORDINATE_GAMMA, gamma->search_min, gamma->search_max, &axis);
 	}
 	if (o->fresnel != FRESNEL_NONE && isnan(o->ior))
 		add_dim(s, COORDINATE_IOR, FIT_IOR_MIN, FIT_IOR_MAX, &scan_ior);
 	if (o->fresnel == FRESNEL_CONDUCTOR)
 		add_dim(s, COORDINATE_K, 0, FIT_K_MAX, &scan_k);
+}
+
+double space_sigma_scale(const struct space *s, double gamma)
+{
+	struct ndf ndf;
+
+	return s->of_std && ndf_init(&ndf, s->of_std, 1, 1, gamma) == STATUS_OK ? ndf.stretch : 1;
 }
 
 double space_value(const struct space *s, int d, double x)
@@ -105,6 +117,7 @@ struct shape space_shape(const struct space *s, const double x[])
 
 	for (int d = 0; d < s->dims; d++)
 		*parameter(&shape, s->coordinate[d]) = space_value(s, d, x[d]);
+	shape.sigma *= space_sigma_scale(s, shape.gamma);
 	return shape;
 }
 
@@ -117,6 +130,7 @@ void space_from_shape(const struct space *s, const struct shape *shape, double x
 {
 	struct shape copy = *shape;
 
+	copy.sigma /= space_sigma_scale(s, copy.gamma);
 	for (int d = 0; d < s->dims; d++)
 		x[d] = space_x(s, d, *parameter(&copy, s->coordinate[d]));
 }
