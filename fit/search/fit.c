@@ -51,6 +51,9 @@ static enum status check_arguments(const struct fit_context *context, const stru
 	if (measurement->n_phi_d != context->geometry.n_phi_d)
 		return error_set(error, STATUS_DOMAIN, "the context is for measurements of %d phi_d: this one has %d",
 				 context->geometry.n_phi_d, measurement->n_phi_d);
+	if (options->anisotropic && measurement->scattered && measurement->scattered->symmetry == SYMMETRY_ISOTROPIC)
+		return error_set(error, STATUS_UNSUPPORTED,
+				 "an isotropic measurement: an anisotropic model needs wi at several azimuths");
 	if (options->anisotropic && !measurement->scattered)
 		return error_set(error, STATUS_DOMAIN, "%s", isotropic_table);
 	if (!criterion_equal(made_for, asked))
@@ -94,7 +97,12 @@ static unsigned bounds_of(const struct fit_result *r, const struct fit_options *
 	unsigned bits = 0;
 
 	if (o->specular) {
-		if (isnan(o->sigma) && on_bound(sqrt(m->ndf.sigma_x * m->ndf.sigma_y), FIT_SIGMA_MIN, FIT_SIGMA_MAX))
+		struct space space;
+
+		space_init(&space, o, m->ndf.class);
+		const double sigma = sqrt(m->ndf.sigma_x * m->ndf.sigma_y) / space_sigma_scale(&space, m->ndf.gamma);
+
+		if (isnan(o->sigma) && on_bound(sigma, FIT_SIGMA_MIN, FIT_SIGMA_MAX))
 			bits |= BOUND_SIGMA;
 		const struct ndf_param *gamma = ndf_has_gamma(m->ndf.class) ? ndf_param_at(m->ndf.class, 1) : NULL;
 

@@ -116,13 +116,18 @@ void space_init(struct space *s, const struct fit_options *o, const struct ndf_c
 		s->fixed = (struct shape){.sigma = 1, .gamma = 2, .ior = 1.5};
 		return;
 	}
+	if (isnan(o->sigma) && ndf_has_gamma(class) && ndf_has_lambda_forms(class))
+		s->of_std = class;
 	if (isnan(o->sigma))
 		add_dim(s, COORDINATE_SIGMA, FIT_SIGMA_MIN, FIT_SIGMA_MAX, &scan_sigma);
 	if (ndf_has_gamma(class) && isnan(o->gamma)) {
 		const struct ndf_param *gamma = ndf_param_at(class, 1);
-		const struct axis axis = gamma_axis(gamma->min, gamma->search_min, ndf_has_lambda_forms(class));
+		const bool student_t = ndf_has_lambda_forms(class);
 
-		s->least_gamma = gamma->min;
+		/* t-family's gamma goes down to 2, where its D degenerates, not to STD's 1.5. */
+		s->least_gamma = student_t ? gamma->search_min - (FIT_GAMMA_MIN - 1.5) : gamma->min;
+		const struct axis axis = gamma_axis(s->least_gamma, gamma->search_min, student_t);
+
 		add_dim(s, COORDINATE_GAMMA, gamma->search_min, gamma->search_max, &axis);
 	}
 	if (o->fresnel != FRESNEL_NONE && isnan(o->ior))
@@ -131,6 +136,13 @@ void space_init(struct space *s, const struct fit_options *o, const struct ndf_c
 		add_dim(s, COORDINATE_K, 0, FIT_K_MAX, &scan_k);
 	if (o->anisotropic)
 		add_axes(s, o);
+}
+
+double space_sigma_scale(const struct space *s, double gamma)
+{
+	struct ndf ndf;
+
+	return s->of_std && ndf_init(&ndf, s->of_std, 1, 1, gamma) == STATUS_OK ? ndf.stretch : 1;
 }
 
 double space_value(const struct space *s, int d, double x)
@@ -162,6 +174,7 @@ struct shape space_shape(const struct space *s, const double x[])
 		shape.stretch = hypot(stretch[0], stretch[1]);
 		shape.angle = atan2(stretch[1], stretch[0]) * 90 / M_PI;
 	}
+	shape.sigma *= space_sigma_scale(s, shape.gamma);
 	return shape;
 }
 
@@ -175,6 +188,7 @@ void space_from_shape(const struct space *s, const struct shape *shape, double x
 	struct shape copy = *shape;
 	const double twice = shape->angle * M_PI / 90;
 
+	copy.sigma /= space_sigma_scale(s, copy.gamma);
 	for (int d = 0; d < s->dims; d++)
 		if (s->coordinate[d] == COORDINATE_STRETCH_COS)
 			x[d] = space_x(s, d, shape->stretch * cos(twice));

@@ -9,7 +9,7 @@
 enum { SPACE_DIMS = 6, SPACE_VALUES = 34 };
 
 enum coordinate {
-	COORDINATE_SIGMA, /* ln sigma */
+	COORDINATE_SIGMA, /* ln sigma, of STD's sigma for the distributions that are STD with another sigma */
 	COORDINATE_GAMMA, /* ln(gamma - the least gamma of the NDF) */
 	COORDINATE_IOR,   /* sqrt(F0) = (n - 1)/(n + 1) */
 	COORDINATE_K,     /* k/(k + 1) */
@@ -32,6 +32,9 @@ struct space {
 	double lo[SPACE_DIMS], hi[SPACE_DIMS];          /* of each coordinate */
 	double lowest[SPACE_DIMS], highest[SPACE_DIMS]; /* of the parameters themselves */
 	double least_gamma;
+	/* Where not NULL, sigma stands in the space as STD's sigma of the same distribution: hyper-cauchy and t-family are STD,
+	 * and along their own sigma and gamma the error has a long curved valley. */
+	const struct ndf_class *of_std;
 	struct axis axis[SPACE_DIMS];
 	struct shape fixed; /* values of the parameters that are not searched */
 	double stretch[2];  /* the same of the first two coordinates of the axes */
@@ -49,6 +52,8 @@ void space_init(struct space *space, const struct fit_options *options, const st
 /* space_shape - the shape at a point; space_from_shape - the reverse, values out of range moved to the nearest end. */
 struct shape space_shape(const struct space *space, const double x[]);
 void space_from_shape(const struct space *space, const struct shape *shape, double x[]);
+/* space_sigma_scale - sigma of a shape over the sigma that stands for it in the space; 1 where it is the same. */
+double space_sigma_scale(const struct space *space, double gamma);
 /* space_x - dimension d's coordinate of a value of its parameter; space_value - the reverse. */
 double space_x(const struct space *space, int d, double value);
 double space_value(const struct space *space, int d, double x);
