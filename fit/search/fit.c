@@ -53,7 +53,7 @@ static enum status check_arguments(const struct fit_context *context, const stru
 				 context->geometry.n_phi_d, measurement->n_phi_d);
 	if (options->anisotropic && measurement->scattered && measurement->scattered->symmetry == SYMMETRY_ISOTROPIC)
 		return error_set(error, STATUS_UNSUPPORTED,
-				 "an isotropic measurement: an anisotropic model needs wi at several azimuths");
+				 "an anisotropic model needs wi at several azimuths: this measurement is isotropic");
 	if (options->anisotropic && !measurement->scattered)
 		return error_set(error, STATUS_DOMAIN, "%s", isotropic_table);
 	if (!criterion_equal(made_for, asked))
