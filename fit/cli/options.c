@@ -403,8 +403,9 @@ int options_unknown_command(const char *typed)
 /* Which of the words behind a command name files that are read. */
 static bool is_input(enum command command, int i, const char *word)
 {
+	/* merge has tables first, and says more of what is missing; export may take no more than a name. */
 	if (command == COMMAND_NDF || command == COMMAND_SAMPLE || command == COMMAND_SYNTH ||
-	    command == COMMAND_MERGE) /* tables first, and says more of what is missing */
+	    command == COMMAND_MERGE || command == COMMAND_EXPORT)
 		return false;
 	return !(command == COMMAND_CONVERT && i == 1) && strcmp(word, "-") != 0;
 }
