@@ -144,8 +144,8 @@ static void what_cannot_be_had_is_told(void **state)
 		{"eval m.binary --from fits.csv", "other.binary", "has no such row", STATUS_NO_DATA},
 		{"eval m.binary --from fits.csv --row 3", NULL, "has no such row", STATUS_NO_DATA},
 		{"eval m.binary --from fits.csv --ndf std", "m.binary", "has no such row", STATUS_NO_DATA},
-		{"fit none.binary", "none.binary", "none.binary", STATUS_IO},
-		{"fit m", NULL, "no file", STATUS_NO_DATA},
+		{"fit m.binary", "none.binary", "none.binary", STATUS_IO},
+		{"fit m.binary", NULL, "no file", STATUS_NO_DATA},
 	};
 
 	(void)state;

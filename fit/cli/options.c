@@ -155,21 +155,24 @@ char *options_text(const struct options *options)
 
 enum { HELP_WIDTH = 21, HELP_INDENT = HELP_WIDTH + 7 };
 
-static void print_option(const struct options *defaults, const struct option_spec *spec, int width)
+/* False when out of memory. */
+static bool print_option(const struct options *defaults, const struct option_spec *spec, int width)
 {
 	char name[64];
 	struct text_stream stream;
 	snprintf(name, sizeof name, "--%s %s", spec->name, spec->argument ? spec->argument : "");
 	const char letter[] = {'-', (char)spec->letter, ',', '\0'};
+	if (!text_stream_open(&stream))
+		return false;
+	option_describe(stream.file, defaults, spec);
+	char *text = text_stream_close(&stream);
+	if (!text)
+		return false;
 	const int at = printf("  %3s %-*s ", spec->letter ? letter : "", HELP_WIDTH, name);
-	char *text = NULL;
-	if (text_stream_open(&stream)) {
-		option_describe(stream.file, defaults, spec);
-		text = text_stream_close(&stream);
-	}
-	terminal_wrap(stdout, text ? text : spec->help, at, HELP_INDENT, width);
+	terminal_wrap(stdout, text, at, HELP_INDENT, width);
 	printf("\n");
 	free(text);
+	return true;
 }
 
 /* Lines of a help are filled anew, but for those that begin with a blank or are empty. */
@@ -193,7 +196,7 @@ static void print_filled(const char *text, int width)
 	}
 }
 
-static void print_help(const struct options *defaults)
+static int print_help(const struct options *defaults)
 {
 	const enum command command = defaults->command;
 	const int width = terminal_width(stdout);
@@ -202,11 +205,14 @@ static void print_help(const struct options *defaults)
 	print_filled(commands[command].help, width);
 	printf("\noptions:\n");
 	for (const struct option_spec *spec = option_specs; spec->name; spec++)
-		if (option_applies(spec, command))
-			print_option(defaults, spec, width);
+		if (option_applies(spec, command) && !print_option(defaults, spec, width)) {
+			report_error("out of memory");
+			return EXIT_FAILED;
+		}
 	printf("  -h, %-*s this text\n", HELP_WIDTH, "--help");
 	printf("  -V, %-*s the version of the program and its libraries\n", HELP_WIDTH, "--version");
 	printf("\nexit code: 0 done, 1 some file failed, 2 wrong usage, 130 interrupted\n");
+	return EXIT_DONE;
 }
 
 void options_overview(void)
@@ -528,8 +534,7 @@ int options_parse(struct options *options, enum command command, int argc, char 
 	for (int code; (code = getopt_long(argc, argv, letters, longs, NULL)) != -1;) {
 		if (code == 'h') {
 			const struct options defaults = options_default(command);
-			print_help(&defaults);
-			return EXIT_DONE;
+			return print_help(&defaults);
 		}
 		if (code == 'V') {
 			version_print();
