@@ -152,8 +152,6 @@ static void the_family_of_std_ends_where_std_does(void **state)
 	struct measurement measurement;
 
 	(void)state;
-	if (case_step(2) > 1)
-		skip(); /* it takes seconds */
 	measurement = two_lobes();
 	options.criterion.max_theta = more.criterion.max_theta = 50;
 	options.ndf[1] = ndf_find("hyper-cauchy");
@@ -192,9 +190,12 @@ int main(void)
 		cmocka_unit_test(recovers_the_parameters),
 		cmocka_unit_test(nested_models_and_threads),
 		cmocka_unit_test(options_leave_out_what_they_say),
-		cmocka_unit_test(the_family_of_std_ends_where_std_does),
 		cmocka_unit_test(can_be_cancelled),
 	};
+	const struct CMUnitTest long_tests[] = {cmocka_unit_test(the_family_of_std_ends_where_std_does)};
+	const int failed = cmocka_run_group_tests_name("fit", tests, NULL, NULL);
 
-	return cmocka_run_group_tests_name("fit", tests, NULL, NULL);
+	if (failed || case_step(2) > 1)
+		return failed;
+	return cmocka_run_group_tests_name("fit_long", long_tests, NULL, NULL);
 }
