@@ -413,7 +413,7 @@ static bool is_input(enum command command, int i, const char *word)
 	if (command == COMMAND_NDF || command == COMMAND_SAMPLE || command == COMMAND_SYNTH ||
 	    command == COMMAND_MERGE || command == COMMAND_EXPORT)
 		return false;
-	return !(command == COMMAND_CONVERT && i == 1) && strcmp(word, "-") != 0;
+	return !(command == COMMAND_CONVERT && i > 0) && strcmp(word, "-") != 0;
 }
 
 /* A file that was typed and is not there, before anything is done. -1: all are. */
