@@ -216,6 +216,8 @@ struct options options_default(enum command command)
 		.kd = {0, 0, 0},
 		.environment = "studio",
 		.size = 256,
+		.accuracy = 0.2,
+		.file_size = 16e6,
 		.pixel_samples = 64,
 	};
 	if (command == COMMAND_EVAL || command == COMMAND_SYNTH) {
@@ -361,7 +363,7 @@ static int find_standard_output(struct options *options)
 	if (options->resume)
 		return options_usage(command, "--resume needs -o FILE, not standard output");
 	options->to_standard_output = true;
-	if (command != COMMAND_EXPORT || options->format != EXPORT_MERL)
+	if (command != COMMAND_EXPORT || !export_is_binary(options->format))
 		options->output = NULL;
 	return -1;
 }
