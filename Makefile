@@ -50,7 +50,7 @@ ifneq ($(shell $(PKG_CONFIG) --exists mpfr 2>/dev/null && echo yes),)
 CFLAGS_stability := -DHAVE_MPFR
 $(BUILD)/tests/stability: LIBS += -lmpfr
 endif
-ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
+ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine 2>/dev/null)),)
 AVX2 ?= yes
 endif
 ifeq ($(AVX2),yes)
@@ -60,9 +60,9 @@ endif
 test_sources := $(wildcard tests/test_*.c)
 test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 # Attacks on inputs, outputs and memory, and fits of hard tables: half of the time of all tests.
-only_long := alloc convert fetch free_form hostile hostile_names hostile_outputs outputs resample slurm stiff
+only_long := alloc convert export fetch free_form hostile hostile_names hostile_outputs outputs resample slurm stiff suspects
 # Some cases in check, all in check-long: check.h, case_step().
-with_long_cases := fit objective suspects
+with_long_cases := fit objective scattered_fit
 short_programs := $(filter-out $(only_long:%=$(BUILD)/tests/test_%),$(test_programs))
 long_programs := $(foreach t,$(only_long) $(with_long_cases),$(BUILD)/tests/test_$(t))
 

@@ -85,10 +85,10 @@ enum status atomic_file_commit(struct atomic_file *file, struct error *error)
 	enum status status = STATUS_OK;
 	int errnum = finish_stream(file);
 
-	/* Only what is complete and on the disk may move what is there. */
+	/* Only what is complete and on the disk may replace what is there. */
 	if (errnum == 0 && file->temp && file->keeps)
-		errnum = output_back_up(&file->output);
-	if (errnum == 0 && file->temp) {
+		status = output_back_up(&file->output, error);
+	if (errnum == 0 && file->temp && status == STATUS_OK) {
 		errnum = output_replace(&file->output, file->temp, -1);
 		if (errnum == 0) {
 			sync_directory(file->output.target);

@@ -6,9 +6,9 @@
 #include "data_readers/output.h"
 #include <stdio.h>
 
-/* struct atomic_file - an open output. The caller writes to `stream` and may leave checking for errors to the commit. A
- * caller that sees a write fail can store errno in `errnum`: the commit then fails with that reason instead of a general
- * one. */
+/* struct atomic_file - an open output. The caller writes to `stream` and may leave checking for errors to the
+ * commit. A caller that sees a write fail can store errno in `errnum`: the commit then fails with that reason
+ * instead of a general one. */
 struct atomic_file {
 	FILE *stream;
 	int errnum;
@@ -24,8 +24,8 @@ struct atomic_file {
  * read "cannot write 'path': reason". */
 MUST_CHECK enum status atomic_file_open(struct atomic_file *file, const char *path, struct error *error);
 
-/* atomic_file_take - the same for an output that is open, which is taken over with its lock: *output is cleared, even on
- * failure. */
+/* atomic_file_take - the same for an output that is open, which is taken over with its lock: *output is cleared,
+ * even on failure. */
 MUST_CHECK enum status atomic_file_take(struct atomic_file *file, struct output *output, struct error *error);
 
 /* atomic_file_commit - flushes, syncs and closes the output and renames it to its target.

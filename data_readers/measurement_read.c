@@ -20,8 +20,10 @@ enum { HEAD = 1 << 15 }; /* bytes that tell the format */
 
 /* struct format - a row of the table: a text format, or a reader of its own. */
 struct format {
-	struct measurement_format_text text; /* extensions: each with its point, between blanks */
-	const char *magic;                   /* how a binary file begins; NULL: `read` is asked by extension only */
+	struct {
+		const char *name, *extensions, *what; /* extensions: each with its point, between blanks */
+	} text;
+	const char *magic; /* how a binary file begins; NULL: `read` is asked by extension only */
 	size_t magic_size;
 	enum status (*read)(const char *path, const struct read_options *options, struct measurement *measurement,
 			    struct error *error);
@@ -52,11 +54,6 @@ static const struct format formats[] = {
 };
 
 enum { FORMATS = sizeof formats / sizeof *formats };
-
-const struct measurement_format_text *measurement_format(int i)
-{
-	return i >= 0 && i < FORMATS ? &formats[i].text : NULL;
-}
 
 /* The extension of this format that the name ends with: its length, or 0. */
 static size_t extension_of(const struct format *format, const char *name)

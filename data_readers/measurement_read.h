@@ -21,10 +21,4 @@ bool measurement_is_known(const char *path);
 /* measurement_extension - the length of the extension of a known format at the end of a name, the point included; else 0. */
 size_t measurement_extension(const char *name);
 
-/* measurement_formats - "name: what it is (extensions)" of format i, from 0; NULL behind the last. */
-struct measurement_format_text {
-	const char *name, *extensions, *what;
-};
-const struct measurement_format_text *measurement_format(int i);
-
 #endif

@@ -35,6 +35,18 @@ static size_t directory_length(const char *path)
 	return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
+/* The same with a dot behind it; false: it is too long for any file. Needs no memory: without that a link to a
+ * descriptor must not pass for one to a file. */
+static bool get_directory(const char *path, char directory[PATH_MAX])
+{
+	const size_t length = directory_length(path);
+	if (length + sizeof "." > PATH_MAX)
+		return false;
+	memcpy(directory, path, length);
+	strcpy(directory + length, ".");
+	return true;
+}
+
 /* The directory of `path` followed by `name`, newly allocated; NULL when out of memory. */
 static char *beside(const char *path, const char *name)
 {
@@ -47,26 +59,24 @@ static char *beside(const char *path, const char *name)
 	return joined;
 }
 
-/* Whether a name is one of /proc itself. Its links to open files do not lead to a name that could be replaced, though
- * readlink() shows one. The directory is asked, not its name: /proc/self/cwd/x is an ordinary file, /dev/fd/1 is not. */
+/* Whether a name is one of /proc itself. Its links to open files do not lead to a name that could be replaced,
+ * though readlink() shows one. The directory is asked, not its name: /proc/self/cwd/x is an ordinary file, /dev/fd/1
+ * is not. */
 static bool is_in_proc(const char *path)
 {
-	char *directory = beside(path, ".");
+	char directory[PATH_MAX];
 	struct statfs info;
-	const bool in_proc = directory && !statfs(directory, &info) && info.f_type == PROC_SUPER_MAGIC;
-	free(directory);
-	return in_proc;
+	return get_directory(path, directory) && !statfs(directory, &info) && info.f_type == PROC_SUPER_MAGIC;
 }
 
 /* The number of the descriptor of this process that a name in /proc stands for; -1: none. */
 static int own_descriptor(const char *path)
 {
 	const char *digits = path + directory_length(path);
-	char *directory = beside(path, "."), *end;
+	char directory[PATH_MAX], *end;
 	struct stat named, own;
-	const bool is_own = directory && !stat(directory, &named) && !stat("/proc/self/fd", &own) &&
-			    named.st_dev == own.st_dev && named.st_ino == own.st_ino;
-	free(directory);
+	const bool is_own = get_directory(path, directory) && !stat(directory, &named) &&
+			    !stat("/proc/self/fd", &own) && named.st_dev == own.st_dev && named.st_ino == own.st_ino;
 	errno = 0;
 	const long number = strtol(digits, &end, 10);
 	return is_own && *digits >= '0' && *digits <= '9' && !*end && !errno && number <= INT_MAX ? (int)number : -1;
@@ -125,8 +135,8 @@ bool output_is_there(const struct output *output)
 	return output->fd >= 0 && is_file(output->target, output->fd);
 }
 
-/* Locks an open file; false: another process has the lock. A process that was killed has it until the system has cleaned up,
- * so this waits a moment. Where the file system has no locks, all is well. */
+/* Locks an open file; false: another process has the lock. A process that was killed has it until the system has
+ * cleaned up, so this waits a moment. Where the file system has no locks, all is well. */
 static bool lock(int fd)
 {
 	for (int wait = 0; flock(fd, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK; wait++) {
@@ -277,8 +287,8 @@ static int inherit(int fd, const struct stat *old)
 	return fchmod(fd, old->st_mode & 0777) == 0 ? 0 : errno;
 }
 
-/* What attempt() makes under a name that is not taken, as 0 or a descriptor. The name does not grow with the target's, which
- * may be as long as names can be. */
+/* What attempt() makes under a name that is not taken, as 0 or a descriptor. The name does not grow with the
+ * target's, which may be as long as names can be. */
 static int make_beside(const char *target, int (*attempt)(const char *target, const char *name), char **name)
 {
 	char text[TEMP_NAME_SIZE];
@@ -401,7 +411,8 @@ bool output_is_backup(const struct output *output)
 	return same;
 }
 
-int output_back_up(const struct output *output)
+/* 0 or errno. */
+static int back_up(const struct output *output)
 {
 	struct stat info;
 	if (output->in_order || stat(output->target, &info))
@@ -420,6 +431,17 @@ int output_back_up(const struct output *output)
 	free(name);
 	free(backup);
 	return errnum;
+}
+
+enum status output_back_up(const struct output *output, struct error *error)
+{
+	const int errnum = back_up(output);
+	if (!errnum)
+		return STATUS_OK;
+	char name[TEXT_QUOTE_SIZE];
+	text_quote(output->path, name, sizeof name);
+	return error_set(error, errnum == ENOMEM ? STATUS_NO_MEMORY : STATUS_IO, "cannot keep '%s' as FILE~: %s", name,
+			 strerror(errnum));
 }
 
 /* Renames, but not over a file that is there. */

@@ -2,8 +2,8 @@
 /* output - what the name of an output means, for all commands, and the lock on it.
  *
  * "-" is standard output. Symbolic links are followed. What the last one leads to is
- *   - a descriptor (/dev/stdout, /dev/fd/N, /proc/self/fd/N and the like), a device, a pipe or a socket: it is written in
- *     order, as it is, without a backup. A descriptor of this process is written through itself, so that its position
+ *   - a descriptor (/dev/stdout, /dev/fd/N, /proc/self/fd/N and the like), a device, a pipe or a socket: it is written
+ *     in order, as it is, without a backup. A descriptor of this process is written through itself, so that its position
  *     is the one of whoever else writes to it.
  *   - a regular file, or nothing yet: a file is replaced by a rename of a new one beside it; its backup, FILE~, stands
  *     beside it, too. No link is ever renamed or replaced, nor anything below /proc. */
@@ -35,28 +35,30 @@ MUST_CHECK enum status output_find(struct output *output, const char *path, stru
 /* output_is_standard - whether it is written in order to standard output, by whatever name. */
 bool output_is_standard(const struct output *output);
 
-/* output_open - after output_find(): opens what is written in order; a named pipe is waited for until it has a reader. A
- * file that is there is locked (flock) until output_close(), whatever takes its name meanwhile. Where the file system
+/* output_open - after output_find(): opens what is written in order; a named pipe is waited for until it has a reader.
+ * A file that is there is locked (flock) until output_close(), whatever takes its name meanwhile. Where the file system
  * has no locks it does without.
  * Errors: STATUS_IO: another process has the lock (its number is told, where the system says it), no permission, a
  * directory, no directory. *output is closed then. */
 MUST_CHECK enum status output_open(struct output *output, enum output_use use, struct error *error);
 
-/* output_new_file - makes an empty file beside a target that is a file; its mode, and where permitted its owner, are those
- * of the target, if that is there. Returns it open for writing at its end and reading, its name newly allocated in *name;
- * -1 and errno when that fails. */
+/* output_new_file - makes an empty file beside a target that is a file; its mode, and where permitted its owner, are
+ * those of the target, if that is there. Returns it open for writing at its end and reading, its name newly
+ * allocated in *name; -1 and errno when that fails. */
 int output_new_file(const struct output *output, char **name);
 
-/* output_back_up - keeps the target, if it is there, as FILE~ beside it, too; an older FILE~ is replaced. The target stays
- * where it is at every moment: the backup is a hard link, or a copy where there are none. Returns 0 or errno. */
-int output_back_up(const struct output *output);
+/* output_back_up - keeps the target, if it is there, as FILE~ beside it, too; an older FILE~ is replaced. The target
+ * stays where it is at every moment: the backup is a hard link, or a copy where there are none.
+ * Errors: STATUS_IO, STATUS_NO_MEMORY; they read "cannot keep 'path' as FILE~: reason". */
+MUST_CHECK enum status output_back_up(const struct output *output, struct error *error);
 
 /* output_is_backup - whether FILE~ and the target are one file, as a kill between backup and rename leaves them. */
 bool output_is_backup(const struct output *output);
 
-/* output_replace - gives the file `name`, made by output_new_file() and open as `fd`, the name of the target. What another
- * process has made there meanwhile is not replaced while that writes to it. On success output->fd is `fd`, which becomes
- * the lock; fd = -1: the lock ends there. Returns 0 or errno; EWOULDBLOCK: another process writes there. */
+/* output_replace - gives the file `name`, made by output_new_file() and open as `fd`, the name of the target. What
+ * another process has made there meanwhile is not replaced while that writes to it. On success output->fd is `fd`,
+ * which becomes the lock; fd = -1: the lock ends there. Returns 0 or errno; EWOULDBLOCK: another process writes
+ * there. */
 int output_replace(struct output *output, const char *name, int fd);
 
 /* output_is_there - whether the target still is the file that is locked. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "data_readers/resample.h"
+#include "data_readers/rgl.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,6 +9,7 @@ enum {
 	SIDES = 4,      /* of a point, in the first two coordinates */
 	PER_SIDE = 2,   /* entries that are averaged */
 	AT_POINT = 2,   /* entries at the very point that are: both orders of wi and wo */
+	TURNS = 8,      /* about the normal, over which a sample that is not isotropic is averaged */
 	NEIGHBOURS = 4, /* the last of these tells how dense entries lie */
 };
 
@@ -194,13 +196,20 @@ static enum status tree_make(struct tree *tree, const struct scattered *s, int n
 	return STATUS_OK;
 }
 
-/* The smallest cosine of any measured direction, less a degree. */
-static double lowest_cosine(const struct scattered *s)
+/* The cosine of a degree beyond that angle, on this side of the horizon. */
+static double beyond(double cosine)
 {
-	double z = 1;
-	for (size_t e = 0; e < s->n; e++)
-		z = fmin(z, fmin(s->wi[e].z, s->wo[e].z));
-	return cos(fmin(acos(z) + 1 / DEGREES, M_PI_2));
+	return cos(fmin(acos(cosine) + 1 / DEGREES, M_PI_2));
+}
+
+/* The smallest cosines that were measured. */
+static void find_ends(const struct scattered *s, double *wi, double *wo)
+{
+	*wi = *wo = 1;
+	for (size_t e = 0; e < s->n; e++) {
+		*wi = fmin(*wi, s->wi[e].z);
+		*wo = fmin(*wo, s->wo[e].z);
+	}
 }
 
 /* The sum of weighted values about a point. */
@@ -226,11 +235,13 @@ static struct value value_at(const struct tree *tree, const struct scattered *s,
 	struct value v = {.weight = 0};
 	struct query nearest = {.x = x, .side = -1, .max = AT_POINT, .bound = INFINITY};
 	search(&nearest, tree->place, tree->n);
+	if (nearest.n == 0) /* there is at least one */
+		return v;
 	const double reach = (double)nearest.found[0]->reach, at_point = NEAR * NEAR;
 	const double bound = LOOK * LOOK * fmax(reach * reach, nearest.distance[0]);
 	v.inside = nearest.distance[0] <= reach * reach;
 	if (nearest.distance[0] <= at_point) {
-		while (nearest.distance[nearest.n - 1] > at_point)
+		while (nearest.n > 1 && nearest.distance[nearest.n - 1] > at_point)
 			nearest.n--;
 		take(&v, s, &nearest);
 		return v;
@@ -246,12 +257,52 @@ static struct value value_at(const struct tree *tree, const struct scattered *s,
 /* What filling a table takes. */
 struct filling {
 	const struct scattered *scattered;
-	const struct tree *tree;
+	const struct rgl *rgl;   /* if the measurement has an interpolant of its own, */
+	const struct tree *tree; /* else this */
 	enum bins bins;
 	enum gaps gaps;
-	double min_z;
+	double min_z;  /* of both directions, */
+	double min_wi; /* and of wi */
 	struct measurement *table;
 };
+
+static struct vec3 turned(struct vec3 v, double phi, bool mirrored)
+{
+	const double c = cos(phi), s = sin(phi), y = mirrored ? -v.y : v.y;
+	return (struct vec3){c * v.x - s * y, s * v.x + c * y, v.z};
+}
+
+/* The interpolant's mean over both sides of the plane of incidence, over both orders of wi and wo unless the table tells them
+ * apart, and over turns of the sample; a channel out of gamut is 0. Only orders whose wi is not below `least` take part. */
+static struct value mean_at(const struct filling *f, struct vec3 wi, struct vec3 wo, double least)
+{
+	const int turns = f->scattered->symmetry == SYMMETRY_ISOTROPIC ? 1 : TURNS;
+	const int orders = f->table->n_phi_d == 180 ? 2 : 1;
+	struct value v = {.inside = true};
+	for (int i = 0; i < turns * orders * 2; i++) {
+		const double phi = 2 * M_PI * (i / (2 * orders)) / turns;
+		const struct vec3 a = turned(wi, phi, i % 2), b = turned(wo, phi, i % 2);
+		const bool swapped = i / 2 % orders;
+		double value[MERL_CHANNELS];
+		if ((swapped ? b.z : a.z) < least || !rgl_f(f->rgl, swapped ? b : a, swapped ? a : b, value))
+			continue;
+		for (int c = 0; c < MERL_CHANNELS; c++)
+			v.sum[c] += fmax(0, value[c]);
+		v.weight += 1;
+	}
+	return v;
+}
+
+/* Where no order was measured, both are taken. */
+static struct value interpolant_at(const struct filling *f, struct vec3 wi, struct vec3 wo)
+{
+	struct value v = mean_at(f, wi, wo, f->min_wi);
+	if (v.weight == 0) {
+		v = mean_at(f, wi, wo, 0);
+		v.inside = false;
+	}
+	return v;
+}
 
 /* Returns 1 if the entry is among what was measured, -1 if it is not, 0 below the horizon. */
 static int fill_entry(const struct filling *f, int i, int j, int k)
@@ -263,9 +314,9 @@ static int fill_entry(const struct filling *f, int i, int j, int k)
 	if (!(wi.z > 1e-9 && wo.z > 1e-9))
 		return 0;
 	coordinates(wi, wo, f->table->n_phi_d, x);
-	const struct value v = value_at(f->tree, f->scattered, x);
+	const struct value v = f->rgl ? interpolant_at(f, wi, wo) : value_at(f->tree, f->scattered, x);
 	const bool inside = v.inside && fmin(wi.z, wo.z) >= f->min_z;
-	for (int c = 0; c < MERL_CHANNELS && (inside || f->gaps == GAPS_FILLED); c++)
+	for (int c = 0; c < MERL_CHANNELS && v.weight > 0 && (inside || f->gaps == GAPS_FILLED); c++)
 		f->table->value[c][at] = (float)(v.sum[c] / v.weight);
 	return inside ? 1 : -1;
 }
@@ -306,12 +357,16 @@ static enum status from_scattered(const struct scattered *s, const struct fillin
 				  struct resampled *result)
 {
 	struct filling f = *filling;
-	struct tree tree;
-	const enum status status = tree_make(&tree, s, f.table->n_phi_d, threads);
+	struct tree tree = {0};
+	const enum status status = f.rgl ? STATUS_OK : tree_make(&tree, s, f.table->n_phi_d, threads);
 	if (status != STATUS_OK)
 		return status;
 	f.tree = &tree;
-	f.min_z = lowest_cosine(s);
+	double lowest_i, lowest_o;
+	find_ends(s, &lowest_i, &lowest_o);
+	f.min_wi = beyond(lowest_i);
+	/* An interpolant grows without bound towards the horizon. */
+	f.min_z = f.rgl ? fmin(lowest_i, lowest_o) : beyond(fmin(lowest_i, lowest_o));
 	fill_rows(&f, threads, result);
 	result->symmetrised = true;
 	free(tree.place);
@@ -351,8 +406,11 @@ enum status measurement_resample(const struct measurement *measurement, enum bin
 	enum status status = measurement_alloc(table, n_phi_d);
 	if (status != STATUS_OK)
 		return status;
-	const struct filling filling = {
-		.scattered = measurement->scattered, .bins = bins, .gaps = gaps, .table = table};
+	const struct filling filling = {.scattered = measurement->scattered,
+					.rgl = measurement->rgl,
+					.bins = bins,
+					.gaps = gaps,
+					.table = table};
 	if (measurement->scattered)
 		status = from_scattered(measurement->scattered, &filling, team, &mine);
 	else

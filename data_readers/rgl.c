@@ -336,7 +336,7 @@ struct mask {
 
 static unsigned mask_bit(const struct mask *mask, size_t node)
 {
-	return mask->valid->data[node / 8] >> (7 - node % 8) & 1u;
+	return (unsigned)mask->valid->data[node / 8] >> (7 - node % 8) & 1u;
 }
 
 static struct mask mask_of(const struct tensor *valid, size_t n_nodes)

@@ -87,12 +87,14 @@ static enum status read_comment(const char *text, struct layout *layout, struct 
 	return STATUS_OK;
 }
 
-/* Whether the name is a number with nm behind it. */
+/* Whether the name is a number of nanometres, with nm behind it or not. */
 static bool is_wavelength(const char *name, double *nm)
 {
-	if (!isdigit((unsigned char)*name) || !text_number(&name, nm))
+	const double least = 100, most = 100000;
+	if (!isdigit((unsigned char)*name) || !text_number(&name, nm) || !(*nm >= least && *nm <= most))
 		return false;
-	return !strcasecmp(line_skip_space((char *)name), "nm");
+	name = line_skip_space((char *)name);
+	return !*name || !strcasecmp(name, "nm");
 }
 
 /* The field of a name, or FIELDS. */
@@ -100,7 +102,8 @@ static int field_of(const char *name, struct layout *layout, double *unit)
 {
 	char plain[NAME_MAX_SIZE];
 	*unit = 1;
-	if (!strcasecmp(name, "incident_angle") || !strcasecmp(name, "measure_angle")) {
+	if (!strcasecmp(name, "incident_angle") || !strcasecmp(name, "incident angle") ||
+	    !strcasecmp(name, "measure_angle") || !strcasecmp(name, "measure angle")) {
 		layout->goniometer = true;
 		*unit = RADIAN;
 		return tolower((unsigned char)*name) == 'i' ? THETA_I : THETA_O;
@@ -174,23 +177,23 @@ static enum status check_layout(const struct layout *layout, struct error *why)
 
 static char separator_of(const char *line)
 {
-	return strchr(line, ',') ? ',' : strchr(line, ';') ? ';' : ' ';
+	if (strchr(line, ','))
+		return ',';
+	return strchr(line, ';') ? ';' : ' ';
 }
 
 /* Cuts the next name off, without blanks and quotes around it. */
 static char *next_name(char **text, char separator)
 {
 	char *name = line_skip_space(*text);
-	char *end = separator == ' ' ? name + strcspn(name, " \t") : name + strcspn(name, (char[]){separator, '\0'});
-	*text = *end ? end + 1 : end;
-	while (end > name && (end[-1] == ' ' || end[-1] == '\t'))
-		end--;
-	if (end - name >= 2 && *name == '"' && end[-1] == '"') {
-		name++;
-		end--;
-	}
-	*end = '\0';
-	return name;
+	const char stops[] = {separator, separator == ' ' ? '\t' : '\0', '\0'};
+	size_t length = strcspn(name, stops);
+	*text = name + length + (name[length] != '\0');
+	while (length > 0 && (name[length - 1] == ' ' || name[length - 1] == '\t'))
+		length--;
+	const bool quoted = length >= 2 && name[0] == '"' && name[length - 1] == '"';
+	name[length - quoted] = '\0';
+	return name + quoted;
 }
 
 /* Understands the line of names, which it takes apart. */

@@ -4,7 +4,7 @@
  * Columns, in any order: theta_i, phi_i, theta_o, phi_o in degrees, or with _rad behind the name in radians; or wi_x, wi_y,
  * wi_z, wo_x, wo_y, wo_z. Without both azimuths the samples lie in the plane of incidence: theta_o is then signed, positive
  * on the side of the mirror direction. Without phi_i alone that is 0. Then r, g, b (linear sRGB), or value (gray), or
- * wavelengths such as 550nm, rising; and, if wanted, solid_angle (sr^2). Incident_angle and Measure_angle, as goniometers
+ * wavelengths such as 550nm or 550, rising; and, if wanted, solid_angle (sr^2). Incident_angle and Measure_angle, as goniometers
  * write, mean theta_i and theta_o in degrees, and a reflectance factor if nothing else is said. Fields are separated by what
  * the line of names has: commas, semicolons, else blanks and tabs. An empty field means that nothing was measured.
  *

@@ -75,19 +75,18 @@ static void share_cell(const struct cutting *cutting, const struct point *point,
 		cutting->scattered->solid_angle[point[p].entry] = share;
 }
 
-/* About the median in this angle. */
+/* About the median in this angle. Of a few points some are taken more than once. */
 static float middle_of(const struct point *point, size_t n, int angle)
 {
-	float sample[SAMPLE];
-	const size_t count = n < SAMPLE ? n : SAMPLE;
-	for (size_t i = 0; i < count; i++) {
-		const float at = point[i * n / count + (n / count) / 2].angle[angle];
+	float sample[SAMPLE] = {0};
+	for (size_t i = 0; i < SAMPLE; i++) {
+		const float at = point[(2 * i + 1) * n / (2 * SAMPLE)].angle[angle];
 		size_t place = i;
 		for (; place > 0 && sample[place - 1] > at; place--)
 			sample[place] = sample[place - 1];
 		sample[place] = at;
 	}
-	return sample[count / 2];
+	return sample[SAMPLE / 2];
 }
 
 /* Where to cut near `middle`: half way between it and the next on the side that has more points. NaN if all are equal. */
@@ -130,7 +129,7 @@ static int widest(const struct point *point, size_t n, int n_angles, float *exte
 {
 	float low[ANGLES], high[ANGLES];
 	int best = 0;
-	for (int a = 0; a < n_angles; a++)
+	for (int a = 0; a < ANGLES; a++)
 		low[a] = high[a] = point->angle[a];
 	for (size_t p = 1; p < n; p++)
 		for (int a = 0; a < n_angles; a++) {

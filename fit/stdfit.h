@@ -198,8 +198,9 @@ typedef struct stdfit_measurement stdfit_measurement;
  * (i, j, k) is number k + n_phi_d (j + 90 i) of a plane, and the three planes of red, green and blue follow one another:
  * 3 * 8100 * n_phi_d values, 1/sr. An entry that is negative or not finite in a channel is masked in all three. */
 
-/* stdfit_measurement_read - reads a MERL file; STDFIT_IO, STDFIT_FORMAT. stdfit_measurement_write - writes one: beside
- * `path` first, which is replaced when all is written. */
+/* stdfit_measurement_read - reads a measurement of any format that the program knows: STDFIT_IO, STDFIT_FORMAT, STDFIT_NO_DATA,
+ * STDFIT_UNSUPPORTED. Samples that lie anywhere are no grid: their n_phi_d is 0. stdfit_measurement_write - writes a MERL file: beside
+ * `path` first, which is replaced when all is written; STDFIT_UNSUPPORTED for samples. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_measurement_read(stdfit_measurement **measurement, const char *path,
 							     struct stdfit_error *error);
 STDFIT_MUST_CHECK enum stdfit_status stdfit_measurement_write(const stdfit_measurement *measurement, const char *path,

@@ -53,8 +53,16 @@ give_up() {
 	exit 1
 }
 
+# One line where the program is to be built without something that it can use.
+note_optional() {
+	without=
+	"${PKG_CONFIG:-pkg-config}" --exists libpng 2>/dev/null || without=' libpng-dev (pictures as PNG)'
+	command -v gnuplot >/dev/null 2>&1 || without="$without gnuplot-nox (plots)"
+	[ -z "$without" ] || [ -n "$target" ] || echo "setup: going on without$without" >&2
+}
+
 lacking=$(missing)
-[ -n "$lacking" ] || exit 0
+[ -n "$lacking" ] || { note_optional; exit 0; }
 
 command -v apt-get >/dev/null 2>&1 || give_up "not found:$lacking; and there is no apt-get to install them with"
 if [ "$(id -u)" -eq 0 ]; then

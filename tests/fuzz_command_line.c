@@ -65,8 +65,9 @@ int fuzz_command_line(const uint8_t *data, size_t size)
 	const int code = parse(argc, argv);
 	capture_end(&err, stderr);
 	capture_end(&out, stdout);
-	PROMISE(code == -1 || code == EXIT_DONE || code == EXIT_USAGE);
-	PROMISE(code == EXIT_USAGE ? is_message(err.text) : err.size == 0);
+	/* EXIT_FAILED: an input that is not there. */
+	PROMISE(code == -1 || code == EXIT_DONE || code == EXIT_USAGE || code == EXIT_FAILED);
+	PROMISE(code == EXIT_USAGE || code == EXIT_FAILED ? is_message(err.text) : err.size == 0);
 	PROMISE((code == EXIT_DONE) == (out.size > 0));
 	free(out.text);
 	free(err.text);

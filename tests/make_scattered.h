@@ -39,6 +39,7 @@ static inline struct measurement make_scattered(const struct cook_torrance *mode
 
 	if (measurement_scattered(&measurement, n) != STATUS_OK)
 		abort();
+	measurement.scattered->symmetry = SYMMETRY_ANISOTROPIC;
 	for (size_t e = 0; e < n; e++) {
 		struct scattered *s = measurement.scattered;
 		double f[3];

@@ -209,10 +209,12 @@ static void run_child(const struct scenario *scenario)
 /* The directory in which a run begins. */
 static void prepare(const struct scenario *scenario)
 {
-	char command[256];
+	char command[512];
 	snprintf(command, sizeof command,
 		 "rm -rf run; mkdir run run/d run/d/e; ln a.binary run/a.binary; ln a.binary run/d/e/b.binary;"
-		 "cp table.csv two.csv shard.csv model.json trace.csv map.pfm run; %s%s%s%s",
+		 "cp table.csv two.csv shard.csv model.json trace.csv map.pfm samples.csv paint.brdf half.dat "
+		 "sphere.bsdf "
+		 "run; %s%s%s%s",
 		 scenario->before ? "cp " : "", scenario->before ? scenario->before : "",
 		 scenario->before ? " run/" : "", scenario->before ? scenario->output[0] : "");
 	assert_int_equal(end(start(command)), 0);
@@ -471,6 +473,13 @@ static const struct scenario scenarios[] = {
 	 .output = {"summary.csv"},
 	 .before = "old.csv"},
 	{.name = "compare as JSON", .arguments = "compare table.csv --json"},
+	{.name = "info of samples", .arguments = "info samples.csv paint.brdf half.dat sphere.bsdf"},
+	{.name = "convert to CSV", .arguments = "convert paint.brdf new.csv", .output = {"new.csv"}},
+	{.name = "convert to a table",
+	 .arguments = "convert --threads 1 samples.csv new.binary",
+	 .output = {"new.binary"},
+	 .binary = true,
+	 .heavy = true},
 	{.name = "merge", .arguments = "merge table.csv shard.csv -o merged.csv", .output = {"merged.csv"}},
 	{.name = "export", .arguments = "export " MODEL " --format json -o new.json", .output = {"new.json"}},
 	{.name = "export of JSON",
@@ -550,7 +559,7 @@ static const struct scenario scenarios[] = {
 	 .output = {"page/index.html", "page/fits.csv"},
 	 .heavy = true},
 	{.name = "fit a directory",
-	 .arguments = "-r . " CHEAP " -o new.csv",
+	 .arguments = "-r d a.binary " CHEAP " -o new.csv",
 	 .output = {"new.csv"},
 	 .before = "old.csv",
 	 .heavy = true},
@@ -620,6 +629,13 @@ static void make_files(void)
 	free(path);
 	shell("mkdir -p bin");
 	write_text("bin/gnuplot", gnuplot);
+	write_text("samples.csv", "theta_i,theta_o,value\n10,20,1\n10,30,2\n20,-5,3\n30,30,4\n");
+	write_text("paint.brdf", "3\n400 550 700\n0.1 0 0.2 3 1 2 3\n0.2 0 0.2 3 3 2 1\n");
+	write_text("half.dat", "#DIM 3 1\n#PARAM_IN RUSIN_TH_TD_PD\n#PARAM_OUT INV_STERADIAN\n.1 .2 .3 1\n");
+	write_text(
+		"sphere.bsdf",
+		"Source Measured\nScatterType BRDF\nSampleRotation 1\n0\nAngleOfIncidence 1\n20\nScatterAzimuth 1\n0\n"
+		"ScatterRadial 2\n0 10\nDataBegin\n1 2\nDataEnd\n");
 	shell("chmod +x bin/gnuplot && \"$STDFIT\" export " MODEL " --format json -o model.json"
 	      " && { cat table.csv; tail -n +2 shard.csv | sed s/b[.]bin/d.e.b.bin/ | sed s,d.e.b.bin,d/e/b.bin,; } "
 	      ">two.csv"

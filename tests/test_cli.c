@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program itself: exit codes, both streams, bad input, batches, kill and resume. Runs $STDFIT or build/stdfit. */
+#include "fit/cli/options.h"
 #include "fit/cli/stack.h"
 #include "run_program.h"
 #include "src/energy.h"
@@ -98,10 +99,9 @@ static void wrong_usage_is_refused(void **state)
 	static const struct {
 		const char *arguments, *message;
 	} wrong[] = {
-		{"", "expected PATH"},
 		{"fit", "expected PATH"},
 		{"compare", "expected PATH"},
-		{"info", "expected FILE"},
+		{"info", "expected PATH"},
 		{"--nonsense a.binary", "'--nonsense'"},
 		{"a.binary -z", "'-z'"},
 		{"a.binary -o", "'-o'"},
@@ -186,8 +186,13 @@ static void expect_bad_file(const char *path, const char *message)
 static void bad_files_are_refused(void **state)
 {
 	(void)state;
-	expect_bad_file("bad/missing.binary", "No such file or directory");
-	expect_bad_file("a.binary/under.binary", "Not a directory");
+	/* What was typed and is not there costs no time and leaves no row. */
+	stdfit("a.binary bad/missing.binary " CHEAP);
+	expect_error(1, "cannot read 'bad/missing.binary': No such file or directory");
+	assert_string_equal(last.out, "");
+	stdfit("a.binary/under.binary " CHEAP);
+	expect_error(1, "cannot read 'a.binary/under.binary': Not a directory");
+	assert_string_equal(last.out, "");
 	make_file("bad/empty.binary", sound, 0);
 	expect_bad_file("bad/empty.binary", "cannot read");
 	make_file("bad/seven-bytes.binary", sound, 7);
@@ -216,8 +221,6 @@ static void bad_files_are_refused(void **state)
 		assert_int_equal(chmod("bad/unreadable.binary", 0), 0);
 		expect_bad_file("bad/unreadable.binary", "Permission denied");
 	}
-	stdfit("info good");
-	expect_error(1, "cannot read 'good'");
 	stdfit("eval good --kd 1");
 	expect_error(1, "cannot read 'good'");
 	stdfit("eval bad/zero.binary --kd 1");
@@ -226,6 +229,73 @@ static void bad_files_are_refused(void **state)
 	expect_error(1, "cannot read 'empty'");
 	stdfit("\"$(printf 'two\\nlines')\" --ndf ggx");
 	expect_error(1, "two\\x0alines");
+}
+
+static void mistyped_words_name_the_nearest(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *arguments, *message;
+	} typed[] = {
+		{"comprae a.binary", "there is no command or file 'comprae': did you mean stdfit compare?"},
+		{"help comprae", "did you mean stdfit compare?"},
+		{"-q compare a.binary", "there is no file 'compare', and a command comes first: stdfit compare ..."},
+		{"fit a.binary --sgima 2", "unknown option '--sgima': did you mean --sigma?"},
+		{"fit a.binary --n 2", "ambiguous option '--n': --ndf, --no-diffuse, --no-specular"},
+		{"fit a.binary --xyzzy", "unknown option '--xyzzy' (see"},
+		{"fit a.binary -y", "unknown option '-y' (see"},
+		{"fit a.binary --ndf ggx,bekmann", "did you mean beckmann?"},
+		{"fit a.binary --sigma 0,2", "a comma parts two numbers"},
+		{"ndf ggx --sigma 0,2 --theta 10", "a comma parts two numbers"},
+		{"ndf bekmann --theta 10 --sigma 1", "there is no NDF 'bekmann': did you mean beckmann?"},
+	};
+	for (size_t i = 0; i < sizeof typed / sizeof *typed; i++) {
+		stdfit(typed[i].arguments);
+		expect_error(2, typed[i].message);
+		assert_string_equal(last.out, "");
+	}
+}
+
+/* Each has its answer on standard output; a bare call is wrong usage all the same. */
+static void first_words_are_answered(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *arguments, *answer;
+		int code;
+	} words[] = {{"", "stdfit compare", 2},
+		     {"help", "stdfit compare", 0},
+		     {"version", "stdfit 0.", 0},
+		     {"-V", "stdfit 0.", 0},
+		     {"eval --version", "stdfit 0.", 0},
+		     {"eval -V", "stdfit 0.", 0},
+		     {"help eval", "usage: stdfit eval", 0}};
+	for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+		stdfit(words[i].arguments);
+		expect_code(words[i].code);
+		expect_out(words[i].answer);
+		assert_string_equal(last.err, "");
+	}
+	/* A file of that name is meant. */
+	shell("cp a.binary help && exec \"$STDFIT\" help " CHEAP);
+	expect_code(0);
+	expect_out("material,ndf");
+	assert_int_equal(unlink("help"), 0);
+}
+
+static void helps_fit_80_columns(void **state)
+{
+	(void)state;
+	for (enum command c = 0; c <= COMMAND_COUNT; c++) {
+		char arguments[64] = "--help";
+		if (c < COMMAND_COUNT)
+			snprintf(arguments, sizeof arguments, "%s --help", options_command(c)->name);
+		stdfit(arguments);
+		expect_code(0);
+		for (char *line = strtok(last.out, "\n"); line; line = strtok(NULL, "\n"))
+			if (strlen(line) > 80)
+				fail_msg("%s: a line of %zu: %s", arguments, strlen(line), line);
+	}
 }
 
 static void nan_and_inf_are_masked_and_counted(void **state)
@@ -577,8 +647,10 @@ static void interrupt(int number)
 	assert_int_equal(table.n_rows, 1);
 	assert_string_equal(table.row[0][RESULT_MATERIAL], "short");
 	csv_table_free(&table);
+	/* One on the short file, one on how to go on. */
 	char *err = slurp("stderr");
-	assert_int_equal(count_lines(err), 1);
+	assert_int_equal(count_lines(err), 2);
+	expect_part(err, "stdfit: interrupted: the same command with --resume goes on\n", __LINE__);
 	free(err);
 }
 
@@ -616,9 +688,9 @@ static void outputs_that_cannot_be_written_are_reported(void **state)
 	stdfit("synth /nowhere/x.binary --kd 1");
 	expect_error(1, "cannot write '/nowhere/x.binary'");
 	/* Told before anything is fitted: not a word on the input. */
-	stdfit("compare missing.binary " CHEAP " -o /nowhere/x.csv");
+	stdfit("compare bad/empty.binary " CHEAP " -o /nowhere/x.csv");
 	expect_error(1, "cannot write '/nowhere/x.csv'");
-	stdfit("missing.binary " CHEAP " --json -o /nowhere/x.json");
+	stdfit("bad/empty.binary " CHEAP " --json -o /nowhere/x.json");
 	expect_error(1, "cannot write '/nowhere/x.json'");
 	if (THREAD_SANITIZER)
 		return;
@@ -806,6 +878,57 @@ static void small_stacks_are_made_larger_or_told(void **state)
 	expect_error(2, "bad value '99999' for --threads: expected a whole number from 1 to 1024");
 }
 
+/* Cells of a table that would colour the terminal, ring its bell or turn the order of letters round. */
+#define EVIL                                                                                                           \
+	"\x1b[31m\xe2\x80\xae"                                                                                         \
+	"evil\xe2\x81\xa6\x07\xc2\x9b"
+
+static void expect_tame(const char *text, int line)
+{
+	static const char *const evil[] = {"\x1b", "\xe2\x80\xae", "\xe2\x81\xa6", "\x07", "\xc2\x9b"};
+	for (size_t e = 0; e < sizeof evil / sizeof *evil; e++)
+		if (strstr(text, evil[e]))
+			fail_msg("line %d: control characters in: %s", line, text);
+}
+
+static void cells_leave_the_terminal_alone(void **state)
+{
+	static const enum result_column evil[] = {RESULT_MATERIAL, RESULT_NDF, RESULT_AT_BOUND, RESULT_OPTIONS};
+	(void)state;
+	stdfit("a.binary --ndf ggx --no-specular -q -o tame.csv");
+	expect_code(0);
+	for (size_t e = 0; e < sizeof evil / sizeof *evil; e++) {
+		struct csv_table table = read_table("tame.csv");
+		char *cells[RESULT_COLUMNS];
+		memcpy(cells, table.row[0], sizeof cells);
+		cells[evil[e]] = EVIL;
+		FILE *file = fopen("evil.csv", "w");
+		assert_non_null(file);
+		csv_write_header(file, result_columns, RESULT_COLUMNS);
+		csv_write_row(file, cells, RESULT_COLUMNS);
+		assert_int_equal(fclose(file), 0);
+		csv_table_free(&table);
+		static const char *const commands[] = {"merge evil.csv --table",
+						       "compare evil.csv --table",
+						       "merge evil.csv tame.csv --table",
+						       "compare evil.csv --json",
+						       "report evil.csv -o evil --size 8 --samples 1 -q",
+						       "eval a.binary --from evil.csv --row 1 --table"};
+		for (size_t c = 0; c < sizeof commands / sizeof *commands; c++) {
+			stdfit(commands[c]);
+			expect_tame(last.out, __LINE__);
+			expect_tame(last.err, __LINE__);
+		}
+		char *page = slurp("evil/index.html");
+		expect_tame(page, __LINE__);
+		free(page);
+	}
+	/* JSON keeps them, escaped. */
+	shell("sed \"s/^a,/$(printf 'a\\033\\342\\200\\256'),/\" tame.csv >evil.csv; exec \"$STDFIT\" merge evil.csv "
+	      "--json");
+	expect_out("\"material\": \"a\\u001b\\u202e\"");
+}
+
 static void noise_follows_the_seed(void **state)
 {
 	(void)state;
@@ -829,6 +952,9 @@ int main(void)
 		cmocka_unit_test(help_and_version_are_printed),
 		cmocka_unit_test(wrong_usage_is_refused),
 		cmocka_unit_test(bad_files_are_refused),
+		cmocka_unit_test(mistyped_words_name_the_nearest),
+		cmocka_unit_test(first_words_are_answered),
+		cmocka_unit_test(helps_fit_80_columns),
 		cmocka_unit_test(nan_and_inf_are_masked_and_counted),
 		cmocka_unit_test(a_fit_reports_what_it_did),
 		cmocka_unit_test(fits_print_JSON_and_tables),
@@ -847,6 +973,7 @@ int main(void)
 		cmocka_unit_test(within_takes_the_simplest),
 		cmocka_unit_test(faults_of_the_data_are_told),
 		cmocka_unit_test(small_stacks_are_made_larger_or_told),
+		cmocka_unit_test(cells_leave_the_terminal_alone),
 		cmocka_unit_test(noise_follows_the_seed),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);

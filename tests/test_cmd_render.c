@@ -199,8 +199,9 @@ static void wrong_usage_is_refused(void **state)
 	expect_error(2, "--kd and --from exclude each other");
 	stdfit("render fits.csv m.binary");
 	expect_error(2, "expected one table and nothing beside it");
+	shell("for n in 1 2 3 4 5 6 7 8; do : >no$n.binary; done");
 	stdfit("render m.binary " MODEL
-	       " --size 4096 --samples 1 --light 0,0,1 -o no.pfm no-such.binary no2.binary no3.binary "
+	       " --size 4096 --samples 1 --light 0,0,1 -o no.pfm no1.binary no2.binary no3.binary "
 	       "no4.binary no5.binary no6.binary no7.binary no8.binary");
 	expect_error(1, "the picture would be too large");
 	assert_false(is_there("no.pfm"));
@@ -218,19 +219,20 @@ static void wrong_usage_is_refused(void **state)
 static void one_bad_file_costs_only_itself(void **state)
 {
 	(void)state;
-	stdfit("render no-such.binary m.binary " MODEL " " QUICK " -o rest.pfm");
-	expect_error(1, "no-such.binary");
+	shell(": >bad.binary");
+	stdfit("render bad.binary m.binary " MODEL " " QUICK " -o rest.pfm");
+	expect_error(1, "bad.binary");
 	assert_int_equal(count_lines(last.out), 2);
 	assert_true(is_there("rest.pfm"));
 	/* It leaves no gap either. */
 	stdfit("render m.binary n.binary " MODEL " " QUICK " -o both.pfm");
 	expect_code(0);
-	stdfit("render m.binary no-such.binary n.binary " MODEL " " QUICK " -o gap.pfm");
-	expect_error(1, "no-such.binary");
+	stdfit("render m.binary bad.binary n.binary " MODEL " " QUICK " -o gap.pfm");
+	expect_error(1, "bad.binary");
 	shell("cmp both.pfm gap.pfm");
 	expect_code(0);
-	stdfit("render no-such.binary " MODEL " " QUICK " -o none.pfm");
-	expect_error(1, "no-such.binary");
+	stdfit("render bad.binary " MODEL " " QUICK " -o none.pfm");
+	expect_error(1, "bad.binary");
 	assert_false(is_there("none.pfm"));
 }
 

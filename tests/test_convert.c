@@ -224,6 +224,78 @@ static void a_directory_has_the_known_files(void **state)
 	expect_error(1, "'mixed/notes.txt': its format is not known: expected MERL table");
 }
 
+/* Writes samples of an STD lobe with 5 % noise as CSV: one value each, r, g and b, or a spectrum. */
+static void write_noisy(const char *path, const char *columns, int n_values)
+{
+	const struct cook_torrance model = make_model("std", 0.2, 2.5, 1.5);
+	struct measurement m = scatter(&model, 6000, 80, false);
+	FILE *file = fopen(path, "w");
+	unsigned seed = 11;
+	assert_non_null(file);
+	fprintf(file, "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,%s\n", columns);
+	for (size_t e = 0; e < m.scattered->n; e++) {
+		const struct vec3 i = m.scattered->wi[e], o = m.scattered->wo[e];
+		fprintf(file, "%.15g,%.15g,%.15g,%.15g,%.15g,%.15g", i.x, i.y, i.z, o.x, o.y, o.z);
+		for (int v = 0; v < n_values; v++) {
+			const int channel = n_values == 1 ? 1 : n_values == 3 ? v : (n_values - 1 - v) * 3 / n_values;
+			fprintf(file, ",%.9g",
+				(double)m.scattered->value[channel][e] * (1 + 0.05 * (2 * random_unit(&seed) - 1)));
+		}
+		fputc('\n', file);
+	}
+	assert_int_equal(fclose(file), 0);
+	measurement_free(&m);
+}
+
+static void noisy_samples_give_their_parameters_back(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *path, *columns;
+		int n_values;
+	} files[] = {{"noisy/gray.csv", "value", 1},
+		     {"noisy/rgb.csv", "r,g,b", 3},
+		     {"noisy/spectrum.csv", "420nm,460nm,500nm,540nm,580nm,620nm,660nm", 7}};
+	shell("mkdir noisy");
+	for (int i = 0; i < 3; i++)
+		write_noisy(files[i].path, files[i].columns, files[i].n_values);
+	stdfit("noisy -q -o noisy.csv");
+	expect_code(0);
+	struct csv_table table = read_table("noisy.csv");
+	assert_int_equal(table.n_rows, 9);
+	for (size_t i = 0; i < table.n_rows; i++) {
+		char *const *row = table.row[i];
+		if (strcmp(row[RESULT_NDF], "std") != 0)
+			continue;
+		check_rel(result_number(row, RESULT_SIGMA), 0.2, 0.02, row[RESULT_MATERIAL]);
+		check_rel(result_number(row, RESULT_GAMMA), 2.5, 0.06, row[RESULT_MATERIAL]);
+		check_rel(result_number(row, RESULT_IOR), 1.5, 0.03, row[RESULT_MATERIAL]);
+		if (!strcmp(row[RESULT_MATERIAL], "rgb"))
+			check_rel(result_number(row, RESULT_KD_R), 0.31, 0.01, "kd_r");
+		if (!strcmp(row[RESULT_MATERIAL], "gray"))
+			check_rel(result_number(row, RESULT_KD_R), 0.12, 0.01, "kd of the one channel");
+	}
+	csv_table_free(&table);
+	/* The tables of a batch with several formats are joined, resumed and compared as others are. */
+	stdfit("noisy -q --shard 1/2 -o one.csv");
+	stdfit("noisy -q --shard 2/2 -o two.csv");
+	stdfit("merge one.csv two.csv noisy -o joined.csv");
+	expect_code(0);
+	char *joined = without_seconds("joined.csv"), *whole = without_seconds("noisy.csv");
+	assert_string_equal(joined, whole);
+	free(joined);
+	free(whole);
+	stdfit("compare noisy.csv");
+	expect_code(0);
+	expect_out("\nspectrum,");
+	stdfit("compare noisy/gray.csv --ndf ggx,beckmann"); /* samples, no table of results */
+	expect_code(0);
+	expect_out("\ngray,");
+	stdfit("noisy/gray.csv -q --resume -o noisy.csv --quantity brdf_cos");
+	shell("grep -c 'quantity=brdf_cos' noisy.csv");
+	assert_string_equal(last.out, "3\n");
+}
+
 static void wrong_usage_is_refused(void **state)
 {
 	(void)state;
@@ -235,7 +307,7 @@ static void wrong_usage_is_refused(void **state)
 	stdfit("convert gray.dat a.txt");
 	expect_error(2, "expected OUT.csv or OUT.binary");
 	stdfit("convert paint.csv ./paint.csv");
-	expect_error(2, "OUT names the file that is to be read");
+	expect_error(2, "OUT names a file that is to be read");
 	stdfit("convert gray.dat a.csv --phi 360");
 	expect_error(2, "--phi means nothing for a CSV");
 	stdfit("convert none.dat a.csv");
@@ -251,10 +323,15 @@ static void wrong_usage_is_refused(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(a_table_stays_itself),          cmocka_unit_test(both_orders_have_their_mean),
-		cmocka_unit_test(a_table_has_two_values_of_phi), cmocka_unit_test(samples_of_a_table_come_back),
-		cmocka_unit_test(a_merl_file_takes_no_samples),  cmocka_unit_test(convert_writes_samples_and_tables),
-		cmocka_unit_test(info_tells_what_is_in_a_file),  cmocka_unit_test(a_directory_has_the_known_files),
+		cmocka_unit_test(a_table_stays_itself),
+		cmocka_unit_test(both_orders_have_their_mean),
+		cmocka_unit_test(a_table_has_two_values_of_phi),
+		cmocka_unit_test(samples_of_a_table_come_back),
+		cmocka_unit_test(a_merl_file_takes_no_samples),
+		cmocka_unit_test(convert_writes_samples_and_tables),
+		cmocka_unit_test(info_tells_what_is_in_a_file),
+		cmocka_unit_test(a_directory_has_the_known_files),
+		cmocka_unit_test(noisy_samples_give_their_parameters_back),
 		cmocka_unit_test(wrong_usage_is_refused),
 	};
 	return cmocka_run_group_tests(tests, enter_directory, leave_directory);

@@ -143,6 +143,30 @@ static void options_leave_out_what_they_say(void **state)
 	measurement_free(&measurement);
 }
 
+/* hyper-cauchy is STD with another sigma, t-family with gamma above 2 nearly contains GGX, at sigmas beyond 4; random starts
+ * only add to the search. */
+static void the_family_of_std_ends_where_std_does(void **state)
+{
+	struct fit_options options = options_for("std"), more = options_for("t-family");
+	struct fit_result r[4], again;
+	struct measurement measurement;
+
+	(void)state;
+	measurement = two_lobes();
+	options.criterion.max_theta = more.criterion.max_theta = 50;
+	options.ndf[1] = ndf_find("hyper-cauchy");
+	options.ndf[2] = ndf_find("ggx");
+	options.ndf[3] = ndf_find("t-family");
+	options.n_ndf = 4;
+	run_fit(&measurement, &options, r);
+	check_rel(r[1].error, r[0].error, 1e-8, "hyper-cauchy");
+	check_between(r[3].error / r[2].error, 0, 1.0002, "t-family above GGX");
+	more.starts = 3;
+	run_fit(&measurement, &more, &again);
+	assert_true(again.error <= r[3].error);
+	measurement_free(&measurement);
+}
+
 static void can_be_cancelled(void **state)
 {
 	const struct cook_torrance truth = make_model("std", 0.2, 1.7, 1.5);
@@ -168,6 +192,10 @@ int main(void)
 		cmocka_unit_test(options_leave_out_what_they_say),
 		cmocka_unit_test(can_be_cancelled),
 	};
+	const struct CMUnitTest long_tests[] = {cmocka_unit_test(the_family_of_std_ends_where_std_does)};
+	const int failed = cmocka_run_group_tests_name("fit", tests, NULL, NULL);
 
-	return cmocka_run_group_tests_name("fit", tests, NULL, NULL);
+	if (failed || case_step(2) > 1)
+		return failed;
+	return cmocka_run_group_tests_name("fit_long", long_tests, NULL, NULL);
 }

@@ -726,6 +726,9 @@ static void quoted_text_is_one_printable_line(void **state)
 		{"\x7f", "\\x7f"},
 		{"\xc2\x85", "\\xc2\\x85"},          /* a control character, beyond ASCII */
 		{"\xe2\x82\xac", "\xe2\x82\xac"},    /* a euro sign */
+		{"\xe2\x80\xae", "\\xe2\\x80\\xae"}, /* from here on from right to left */
+		{"\xe2\x81\xa9", "\\xe2\\x81\\xa9"},
+		{"\xd8\x9c", "\\xd8\\x9c"},
 		{"\xe2\x82", "\\xe2\\x82"},          /* cut short */
 		{"\xc0\xaf", "\\xc0\\xaf"},          /* overlong */
 		{"\xed\xa0\x80", "\\xed\\xa0\\x80"}, /* a surrogate */

@@ -101,13 +101,13 @@ static void a_row_is_the_model_that_was_fitted(void **state)
 	}
 	model_source_free(&rows);
 
-	assert_int_equal(parse(&options, COMMAND_EVAL, "eval x --from fits.csv --row 2"), -1);
+	assert_int_equal(parse(&options, COMMAND_EVAL, "eval m.binary --from fits.csv --row 2"), -1);
 	must_read(&options, NULL, &rows);
 	assert_int_equal(rows.n, 1);
 	same_model(&rows.model[0], &fitted.model[1]);
 	model_source_free(&rows);
 
-	assert_int_equal(parse(&options, COMMAND_EVAL, "eval x --from fits.csv --ndf ggx"), -1);
+	assert_int_equal(parse(&options, COMMAND_EVAL, "eval m.binary --from fits.csv --ndf ggx"), -1);
 	must_read(&options, NULL, &rows);
 	assert_int_equal(rows.n, 1);
 	same_model(&rows.model[0], &fitted.model[0]);
@@ -122,9 +122,9 @@ static void parameters_are_taken_as_they_are(void **state)
 
 	(void)state;
 	assert_int_equal(
-		parse(&options, COMMAND_EVAL, "eval a/b.binary --kd 0.1,0.2,0.3 --ks 0.5 --sigma 0.2 --gamma 1.7"), -1);
+		parse(&options, COMMAND_EVAL, "eval ./m.binary --kd 0.1,0.2,0.3 --ks 0.5 --sigma 0.2 --gamma 1.7"), -1);
 	assert_int_equal(model_source_kind(&options), SOURCE_GIVEN);
-	must_read(&options, "a/b.binary", &source);
+	must_read(&options, "a/b.binary", &source); /* is not read */
 	assert_int_equal(source.n, 1);
 	assert_true(isnan(source.model[0].error));
 	assert_string_equal(source.model[0].material, "b");
@@ -140,12 +140,12 @@ static void what_cannot_be_had_is_told(void **state)
 		const char *line, *path, *part;
 		enum status status;
 	} bad[] = {
-		{"eval m --from none.csv", NULL, "none.csv", STATUS_IO},
-		{"eval m --from fits.csv", "other.binary", "has no such row", STATUS_NO_DATA},
-		{"eval m --from fits.csv --row 3", NULL, "has no such row", STATUS_NO_DATA},
-		{"eval m --from fits.csv --ndf std", "m.binary", "has no such row", STATUS_NO_DATA},
-		{"fit none.binary", "none.binary", "none.binary", STATUS_IO},
-		{"fit m", NULL, "no file", STATUS_NO_DATA},
+		{"eval m.binary --from none.csv", NULL, "none.csv", STATUS_IO},
+		{"eval m.binary --from fits.csv", "other.binary", "has no such row", STATUS_NO_DATA},
+		{"eval m.binary --from fits.csv --row 3", NULL, "has no such row", STATUS_NO_DATA},
+		{"eval m.binary --from fits.csv --ndf std", "m.binary", "has no such row", STATUS_NO_DATA},
+		{"fit m.binary", "none.binary", "none.binary", STATUS_IO},
+		{"fit m.binary", NULL, "no file", STATUS_NO_DATA},
 	};
 
 	(void)state;

@@ -315,10 +315,19 @@ static void backups_without_hard_links(void **state)
 	no_links = false;
 	assert_int_equal(whole, STATUS_IO);
 	assert_int_equal(appended, STATUS_IO);
-	expect_part(error.text, "cannot write 'plain.csv': File too large", __LINE__);
+	expect_part(error.text, "cannot keep 'plain.csv' as FILE~: File too large", __LINE__);
 	shell("cmp plain.csv older.csv && ! test -e plain.csv~ && ! ls -a | grep tmp$");
 	expect_code(0);
 	csv_table_free(&rows);
+	/* What is no file has the backup's name. */
+	shell("mkdir in_the_way.csv~; cp a.csv in_the_way.csv");
+	static const char *const kept[] = {"a.binary " CHEAP " -o in_the_way.csv", "merge b.csv -o in_the_way.csv"};
+	for (size_t k = 0; k < sizeof kept / sizeof *kept; k++) {
+		stdfit(kept[k]);
+		expect_error(1, "cannot keep 'in_the_way.csv' as FILE~: Is a directory");
+	}
+	shell("cmp a.csv in_the_way.csv && ! ls -a | grep tmp$");
+	expect_code(0);
 }
 
 /* Every command, every way to name a file. */
@@ -348,6 +357,12 @@ static void inputs_are_no_outputs(void **state)
 		stdfit(refused[r]);
 		expect_error(2, "--output names a file that is to be read");
 	}
+	stdfit("convert in.binary directory/../in.pfm");
+	expect_error(2, "OUT names a file that is to be read");
+	shell("\"$STDFIT\" convert a.binary samples.csv -q && \"$STDFIT\" convert a.binary - -q | cmp - samples.csv && "
+	      "rm "
+	      "samples.csv");
+	expect_code(0);
 	shell("exec \"$STDFIT\" merge in.csv b.csv -o - >>in.csv");
 	expect_error(2, "--output names a file that is to be read");
 	/* The backup of an output. */

@@ -227,6 +227,42 @@ static void wrong_input_is_refused(void **state)
 	expect_nothing_left();
 }
 
+/* More than a page is good for: a file each, and one that leads to them. Equal names are told apart, in no time. */
+static void many_materials_have_a_page_each(void **state)
+{
+	(void)state;
+	shell("awk 'NR == 2 { for (i = 1; i <= 3000; i++) { r = $0; sub(/,a[.]binary,/, \",no/\" i \".binary,\", r); "
+	      "print r } "
+	      "} NR == 1' fits.csv >most.csv; { head -n 151 most.csv; sed -n '152s/^a,/A-2,/p' most.csv; } >many.csv");
+	stdfit("report many.csv -o many --size 16 -q");
+	assert_int_equal(last.code, 1); /* no picture: there are no such files */
+	expect_nothing_left();
+	const char *page = "many/index.html";
+	expect_in_page(page, "<title>stdfit: fits of 151 materials</title>", true);
+	expect_in_page(page, "<a href=\"materials/a.html\">a</a>", true);
+	expect_in_page(page, "<a href=\"materials/A-2.html\">A-2</a>", true);
+	expect_in_page(page, "<a href=\"materials/a-2.html\">", false);
+	expect_in_page(page, "<a href=\"materials/a-3.html\">a</a>", true);
+	expect_in_page(page, "<a href=\"materials/a-151.html\">a</a>", true);
+	expect_in_page(page, "<details", false);
+	page = "many/materials/a-151.html";
+	expect_whole(page);
+	expect_in_page(page, "<title>stdfit: fits of a</title>", true);
+	expect_in_page(page, "<a href=\"../index.html\">All 151 materials</a>", true);
+	expect_in_page(page, "id=\"m-a-151\" open>", true);
+	shell("ls many/materials | wc -l");
+	assert_int_equal(atoi(last.out), 151);
+	/* One less stands in one file. */
+	shell("sed -i '$d' many.csv; rm -r many; exec \"$STDFIT\" report many.csv -o many --size 16 -q");
+	expect_whole("many/index.html");
+	expect_in_page("many/index.html", "id=\"m-a-150\">", true);
+	shell("[ ! -e many/materials ]");
+	expect_code(0);
+	/* That equal names are told apart takes no 15 s of processor time, after which the system ends the program. */
+	shell("ulimit -t 15; exec \"$STDFIT\" plot most.csv -o most -q");
+	assert_int_equal(last.code, 1);
+}
+
 static void an_interrupt_leaves_the_old_page(void **state)
 {
 	(void)state;
@@ -277,6 +313,7 @@ int main(void)
 		cmocka_unit_test(without_gnuplot),
 		cmocka_unit_test(what_is_missing_is_told),
 		cmocka_unit_test(wrong_input_is_refused),
+		cmocka_unit_test(many_materials_have_a_page_each),
 		cmocka_unit_test(an_interrupt_leaves_the_old_page),
 	};
 	return cmocka_run_group_tests_name("report", tests, set_up, tear_down);

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables of scattered samples: what lies between them, beside them, and their pictures. */
+#include "data_readers/measurement_read.h"
 #include "data_readers/resample.h"
 #include "data_readers/samples_csv.h"
 #include "make_samples.h"
+#include "rgl_file.h"
 #include "run_program.h"
 
 /* A material that changes slowly, and the program's options for it. */
@@ -113,6 +115,60 @@ static void filled_tables_are_tables(void **state)
 	measurement_free(&samples);
 }
 
+/* Smooth and reciprocal, with a part that depends on the azimuth and vanishes in the mean over it. */
+static double brushed(struct vec3 wi, struct vec3 wo, int channel)
+{
+	const struct vec3 h = vec3_unit(vec3_add(wi, wo));
+	return 0.3 + 0.1 * channel + 0.3 * h.z * h.z + 0.4 * (h.x * h.x - h.y * h.y);
+}
+
+static double plain(struct vec3 wi, struct vec3 wo, int channel)
+{
+	const struct vec3 h = vec3_unit(vec3_add(wi, wo));
+	return 0.3 + 0.1 * channel + 0.3 * h.z * h.z;
+}
+
+/* Between its nodes a file that has an interpolant gives that, with the mean of turns if it is not isotropic. */
+static void rgl_files_are_evaluated_by_their_interpolant(void **state)
+{
+	(void)state;
+	const double theta_last = 1.3;
+	const struct rgl_spec specs[] = {{1, 9, 33, 3, 0, 0, theta_last, false, true, plain},
+					 {33, 9, 17, 3, -M_PI, M_PI, theta_last, false, true, brushed}};
+	for (int n = 0; n < 2; n++) {
+		struct rgl_bytes file = rgl_make(&specs[n]);
+		FILE *stream = fopen("x.bsdf", "wb");
+		struct measurement samples;
+		struct resampled result;
+		double sum = 0;
+		size_t valid = 0;
+		assert_non_null(stream);
+		assert_int_equal(fwrite(file.bytes, 1, file.size, stream), file.size);
+		assert_int_equal(fclose(stream), 0);
+		assert_int_equal(measurement_read("x.bsdf", NULL, &samples, NULL), STATUS_OK);
+		struct measurement table = resampled(&samples, 180, GAPS_MASKED, 2, &result);
+		for (int i = 0; i < MERL_THETA_H; i++)
+			for (int j = 0; j < MERL_THETA_D; j++)
+				for (int k = 0; k < 180; k++) {
+					const size_t e = measurement_at(180, i, j, k);
+					struct vec3 wi, wo;
+					halfdiff_trig_dirs(bins_trig(BINS_NODE, i, j, k), &wi, &wo);
+					const double higher = fmax(wi.z, wo.z), lower = fmin(wi.z, wo.z);
+					/* One of the two was a wi. */
+					if (higher < cos(theta_last + 0.02))
+						assert_true(isnan(table.value[1][e]));
+					if (higher < cos(theta_last - 0.02) || lower < 0.05)
+						continue;
+					sum += fabs((double)table.value[1][e] / plain(wi, wo, 1) - 1);
+					valid++;
+				}
+		check_between(sum / (double)valid, 0, n ? 0.03 : 0.01, "the mean relative error");
+		measurement_free(&table);
+		measurement_free(&samples);
+		free(file.bytes);
+	}
+}
+
 static void render_shows_samples_as_their_model(void **state)
 {
 	(void)state;
@@ -138,6 +194,7 @@ int main(void)
 		cmocka_unit_test(what_lies_between_is_interpolated),
 		cmocka_unit_test(samples_in_a_plane_tell_nothing_beside_it),
 		cmocka_unit_test(filled_tables_are_tables),
+		cmocka_unit_test(rgl_files_are_evaluated_by_their_interpolant),
 		cmocka_unit_test(render_shows_samples_as_their_model),
 	};
 	return cmocka_run_group_tests(tests, enter_directory, leave_directory);

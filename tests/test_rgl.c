@@ -350,7 +350,7 @@ static void wrong_fields_are_refused_by_name(void **state)
 		case 12:
 			for (size_t n = 0; n < 3 * 3 * 16; n++)
 				set_float(&file, "rgb", n, -1);
-			words = "no usable entry";
+			words = "no sample can be used";
 			break;
 		default:
 			file.bytes[12] = 2;

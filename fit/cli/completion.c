@@ -53,6 +53,19 @@ static void bash_branch(FILE *file, enum command c, enum value value, const char
 		fprintf(file, ") %s ;;\n", what);
 }
 
+/* The commands whose first word is the name of a distribution. */
+static bool takes_ndf(enum command c)
+{
+	return c == COMMAND_NDF || c == COMMAND_SAMPLE;
+}
+
+static void write_ndfs(FILE *file)
+{
+	for (int i = 0; ndf_at(i); i++)
+		fprintf(file, "%s ", ndf_name(ndf_at(i)));
+	fputs("ellipsoid", file);
+}
+
 static void bash_command(FILE *file, enum command c)
 {
 	fprintf(file, "\t%s)\n\t\toptions='--help", options_command(c)->name);
@@ -72,6 +85,11 @@ static void bash_command(FILE *file, enum command c)
 	}
 	bash_branch(file, c, VALUE_FILE, "return");
 	bash_branch(file, c, VALUE_OTHER, "compopt +o default +o bashdefault 2>/dev/null; return");
+	if (takes_ndf(c)) {
+		fputs("\t\t*) [[ $current == -* ]] || words='", file);
+		write_ndfs(file);
+		fputs("' ;;\n", file);
+	}
 	fputs("\t\tesac\n\t\t;;\n", file);
 }
 
@@ -171,7 +189,13 @@ static void zsh_command(FILE *file, enum command c)
 	for (const struct option_spec *spec = option_specs; spec->name; spec++)
 		if (option_applies(spec, c))
 			zsh_option(file, spec);
-	fputs("\t\t)\n\t\t;;\n", file);
+	fputs("\t\t)\n", file);
+	if (takes_ndf(c)) {
+		fputs("\t\targuments=('1:distribution:(", file);
+		write_ndfs(file);
+		fputs(")')\n", file);
+	}
+	fputs("\t\t;;\n", file);
 }
 
 static void write_zsh(FILE *file)
@@ -180,7 +204,7 @@ static void write_zsh(FILE *file)
 	      "# zsh completion of stdfit, as written by stdfit --completion zsh\n"
 	      "_stdfit() {\n"
 	      "\tlocal command=fit first=$(( CURRENT == 2 )) ret=1\n"
-	      "\tlocal -a options commands\n"
+	      "\tlocal -a options commands arguments=('*:file:_files')\n"
 	      "\tcommands=(\n",
 	      file);
 	for (enum command c = 0; c < COMMAND_COUNT; c++) {
@@ -210,7 +234,7 @@ static void write_zsh(FILE *file)
 	      "\t\toptions+=(--version'[versions of program and libraries]' --man'[the manual page]'\n"
 	      "\t\t\t'--completion[completion for a shell]:shell:(bash zsh)')\n"
 	      "\tfi\n"
-	      "\t_arguments -s -S : $options '*:file:_files' && ret=0\n"
+	      "\t_arguments -s -S : $options $arguments && ret=0\n"
 	      "\treturn ret\n"
 	      "}\n"
 	      "_stdfit \"$@\"\n",

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/cli/distribution.h"
 #include "data_readers/text_quote.h"
+#include "fit/cli/nearest.h"
 #include "fit/results/csv_number.h"
 #include "fit/results/result.h"
 #include "fit/search/free_form.h"
@@ -212,12 +213,21 @@ static enum status make(const struct distribution_words *words, struct distribut
 		return make_ellipsoid(words, sigma_x, sigma_y, distribution, error);
 	if (!class) {
 		char shown[TEXT_QUOTE_SIZE];
+		const int near = nearest_word(words->name ? words->name : "", distribution_name_at, NULL);
 		text_quote(words->name ? words->name : "", shown, sizeof shown);
-		return error_set(error, STATUS_DOMAIN, "there is no NDF '%s'", shown);
+		return error_set(error, STATUS_DOMAIN, "there is no NDF '%s'%s%s%s", shown,
+				 near < 0 ? "" : ": did you mean ", near < 0 ? "" : distribution_name_at(NULL, near),
+				 near < 0 ? "" : "?");
 	}
 	status = ndf_is_tabulated(class) ? make_pl(words, distribution, error)
 					 : make_class(words, class, sigma_x, sigma_y, gamma, &distribution->ndf, error);
 	return status != STATUS_OK ? status : set_lambda(words->lambda, &distribution->ndf, error);
+}
+
+const char *distribution_name_at(const void *data, int i)
+{
+	(void)data;
+	return ndf_at(i) ? ndf_name(ndf_at(i)) : NULL;
 }
 
 enum status distribution_make(const struct distribution_words *words, struct distribution *distribution,

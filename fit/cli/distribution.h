@@ -53,4 +53,7 @@ struct vec3 distribution_sample(const struct distribution *distribution, enum sa
 /* distribution_pdf - the density of distribution_sample(), 1/sr. */
 double distribution_pdf(const struct distribution *distribution, enum sampling sampling, struct vec3 wi, struct vec3 m);
 
+/* distribution_name_at - the name of NDF i, NULL past the last: for nearest_word(). */
+const char *distribution_name_at(const void *data, int i);
+
 #endif

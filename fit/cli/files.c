@@ -329,15 +329,3 @@ bool files_same(const char *a, const char *b)
 	return !strcmp(split(a, in_a), split(b, in_b)) && find_id(in_a, &x, &regular) && find_id(in_b, &y, &regular) &&
 	       !id_order(&x, &y);
 }
-
-bool files_has(const struct files *files, const char *path)
-{
-	struct id file, other;
-	bool regular;
-	if (!find_id(path, &file, &regular) || !regular)
-		return false;
-	for (size_t i = 0; i < files->n; i++)
-		if (find_id(files->path[i], &other, &regular) && !id_order(&file, &other))
-			return true;
-	return false;
-}

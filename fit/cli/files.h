@@ -22,8 +22,6 @@ void files_free(struct files *files);
 
 /* files_same - whether two names are one regular file, or would be one once written. */
 bool files_same(const char *a, const char *b);
-/* files_has - whether `path` is one of the files, by whatever name. */
-bool files_has(const struct files *files, const char *path);
 
 /* files_sort - puts them in the order of their bytes, whatever the locale and the command line's order. */
 void files_sort(struct files *files);

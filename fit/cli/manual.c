@@ -117,7 +117,9 @@ static void write_command(FILE *file, enum command c)
 	for (const struct option_spec *spec = option_specs; spec->name; spec++)
 		if (option_applies(spec, c))
 			write_option(file, &defaults, spec);
-	fputs(".TP\n\\fB\\-h\\fR, \\fB\\-\\-help\\fR\nThe options, with the defaults of this build.\n", file);
+	fputs(".TP\n\\fB\\-h\\fR, \\fB\\-\\-help\\fR\nThe options, with the defaults of this build.\n"
+	      ".TP\n\\fB\\-V\\fR, \\fB\\-\\-version\\fR\nAs \\fBstdfit \\-\\-version\\fR.\n",
+	      file);
 }
 
 static const char description[] =

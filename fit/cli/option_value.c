@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/cli/option_value.h"
 #include "data_readers/text_quote.h"
+#include "fit/cli/nearest.h"
 #include "fit/results/csv.h"
 
 #include <ctype.h>
@@ -29,6 +30,7 @@
 #define SEARCHES (FITS | BENCH)
 #define TABLES (FIT | COMPARE | BENCH)
 #define MODEL (EVAL | SYNTH)
+#define AXES (FIT | COMPARE)
 #define SOURCES (EXPORT | RENDER) /* a fit, a row or given parameters: model_source.h */
 #define AT(member) offsetof(struct options, member)
 
@@ -39,8 +41,8 @@ const struct option_spec option_specs[] = {
 	 AT(output), 0, 0},
 	{"output", 'o', KIND_TEXT, COMPARE | MERGE, NOT_RECORDED, "FILE",
 	 "write the table there, - for standard output; an older FILE becomes FILE~", AT(output), 0, 0},
-	{"output", 'o', KIND_TEXT, EXPORT, NOT_RECORDED, "FILE", "write it there, not to standard output", AT(output),
-	 0, 0},
+	{"output", 'o', KIND_TEXT, EXPORT, NOT_RECORDED, "FILE", "write it there, not to standard output (-)",
+	 AT(output), 0, 0},
 	{"format", 0, KIND_FORMAT, EXPORT, NOT_RECORDED, "NAME", "what to write", AT(format), 0, 0},
 	{"accuracy", 0, KIND_PERCENT, EXPORT, NOT_RECORDED, "P%",
 	 "bsdf, bsdf-rgb: refine until the error, L1 weighted by cosines, is at most this", AT(accuracy), 1e-3, 100},
@@ -57,7 +59,7 @@ const struct option_spec option_specs[] = {
 	{"shard", 0, KIND_SHARD, FIT, NOT_RECORDED, "I/N",
 	 "fit only share I of N of the files: of their sorted list every N-th, beginning with the I-th", AT(shard), 1,
 	 100000},
-	{"recursive", 'r', KIND_ON, FITS | MERGE | RENDER, NOT_RECORDED, NULL,
+	{"recursive", 'r', KIND_ON, FITS | MERGE | RENDER | INFO, NOT_RECORDED, NULL,
 	 "directories: take the files below them too", AT(recursive), 0, 0},
 	{"quiet", 'q', KIND_ON, SEARCHES | RENDER, NOT_RECORDED, NULL, "no progress line, no summary", AT(quiet), 0, 0},
 	{"quiet", 'q', KIND_ON, EXPORT | CONVERT, NOT_RECORDED, NULL, "no words but errors", AT(quiet), 0, 0},
@@ -97,8 +99,13 @@ const struct option_spec option_specs[] = {
 	 FIT_IOR_MAX},
 	{"gamma", 0, KIND_GAMMA, SEARCHES, RECORDED, "G", "fix the shape gamma (STD: above 1.5; inf is Beckmann)",
 	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
-	{"sigma", 0, KIND_NUMBER, SEARCHES, RECORDED, "S", "fix the roughness", AT(fit.sigma), FIT_SIGMA_MIN,
-	 FIT_SIGMA_MAX},
+	{"sigma", 0, KIND_SIGMA, SEARCHES, RECORDED, "S|SX,SY", "fix the roughness; with --anisotropic along both axes",
+	 AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
+	{"anisotropic", 0, KIND_ON, AXES, RECORDED_ANISOTROPIC, NULL,
+	 "scattered entries: search sigma_x, sigma_y and the angle of their axes, too, from the isotropic fit on",
+	 AT(fit.anisotropic), 0, 0},
+	{"angle", 0, KIND_NUMBER, AXES, RECORDED_ANISOTROPIC, "DEG",
+	 "with --anisotropic: fix the azimuth of the axis of sigma_x", AT(fit.angle), -360, 360},
 	{"algorithm", 0, KIND_ALGORITHM, FIT, RECORDED_ALGORITHM, "NAME",
 	 "the search; others than the default search the full table with nlopt until --time is up, kd and ks solved "
 	 "for "
@@ -123,7 +130,11 @@ const struct option_spec option_specs[] = {
 	{"seed", 0, KIND_SEED, SEARCHES, RECORDED, "N", "seed of the random shapes", AT(fit.seed), 0, 0},
 	{"within", 0, KIND_PERCENT, FIT, RECORDED_WITHIN, "P%",
 	 "per material only the simplest model whose error is within P% of the best", AT(within), 0, 1000},
-	{"sigma", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "S", "roughness", AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
+	{"sigma", 0, KIND_NUMBER, SYNTH, NOT_RECORDED, "S", "roughness", AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
+	{"sigma", 0, KIND_SIGMA, EVAL, NOT_RECORDED, "S|SX,SY", "roughness, along both axes if two", AT(fit.sigma),
+	 FIT_SIGMA_MIN, FIT_SIGMA_MAX},
+	{"angle", 0, KIND_NUMBER, EVAL, NOT_RECORDED, "DEG", "azimuth of the axis of SX; 0 if not given", AT(fit.angle),
+	 -360, 360},
 	{"gamma", 0, KIND_GAMMA, MODEL, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann)",
 	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
 	{"ior", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "N", "index of refraction", AT(fit.ior), FIT_IOR_MIN, FIT_IOR_MAX},
@@ -166,8 +177,8 @@ const struct option_spec option_specs[] = {
 	{"pictures", 0, KIND_ON, COMPARE, NOT_RECORDED, NULL,
 	 "render each model and its measured table, too, and show delta E and SSIM of the pictures", AT(pictures), 0,
 	 0},
-	{"output", 'o', KIND_TEXT, RENDER, NOT_RECORDED, "FILE", "the picture: FILE.png (sRGB) or FILE.pfm (linear)",
-	 AT(picture), 0, 0},
+	{"output", 'o', KIND_TEXT, RENDER, NOT_RECORDED, "FILE",
+	 "the picture: FILE.png (sRGB) or FILE.pfm (linear), - for standard output", AT(picture), 0, 0},
 	{"environment", 'e', KIND_TEXT, RENDER | REPORT, NOT_RECORDED, "NAME",
 	 "studio, sky or lights, or a map of latitude and longitude, FILE.hdr or FILE.pfm (default: studio)",
 	 AT(environment), 0, 0},
@@ -276,6 +287,26 @@ static enum status parse_number(const struct option_spec *spec, const char *text
 	return STATUS_OK;
 }
 
+static enum status parse_sigma(const struct option_spec *spec, const char *text, struct fit_options *fit,
+			       struct error *error)
+{
+	char first[CSV_NUMBER_SIZE];
+	const size_t length = strcspn(text, ",");
+	if (length >= sizeof first)
+		return expected_range(spec, error);
+	memcpy(first, text, length);
+	first[length] = '\0';
+	double sigma, sigma_y = NAN;
+	enum status status = parse_number(spec, first, &sigma, error);
+	if (status == STATUS_OK && text[length])
+		status = parse_number(spec, text + length + 1, &sigma_y, error);
+	if (status != STATUS_OK)
+		return status;
+	fit->sigma = sigma;
+	fit->sigma_y = sigma_y;
+	return STATUS_OK;
+}
+
 static enum status parse_percent(const struct option_spec *spec, const char *text, double *value, struct error *error)
 {
 	char number[CSV_NUMBER_SIZE];
@@ -369,6 +400,16 @@ static enum status expected_choice(enum option_kind kind, struct error *error)
 	return error_set(error, STATUS_DOMAIN, "expected one of %s", names);
 }
 
+static enum status unknown_ndf(const char *name, struct error *error)
+{
+	struct error choice;
+	const int near = nearest_word(name, distribution_name_at, NULL);
+	const enum status status = expected_choice(KIND_NDFS, &choice);
+	if (near < 0)
+		return error_set(error, status, "%s", choice.text);
+	return error_set(error, status, "%s; did you mean %s?", choice.text, distribution_name_at(NULL, near));
+}
+
 static enum status parse_ndfs(const char *text, struct fit_options *fit, struct error *error)
 {
 	char name[64], shown[TEXT_QUOTE_SIZE];
@@ -377,7 +418,7 @@ static enum status parse_ndfs(const char *text, struct fit_options *fit, struct 
 		rest = next_item(rest, name, sizeof name);
 		const struct ndf_class *ndf = ndf_find(name);
 		if (!ndf)
-			return expected_choice(KIND_NDFS, error);
+			return unknown_ndf(name, error);
 		text_quote(name, shown, sizeof shown);
 		for (int i = 0; i < n; i++)
 			if (fit->ndf[i] == ndf)
@@ -427,6 +468,8 @@ enum status option_parse(struct options *options, const struct option_spec *spec
 	case KIND_NUMBER:
 	case KIND_GAMMA:
 		return parse_number(spec, text, value, error);
+	case KIND_SIGMA:
+		return parse_sigma(spec, text, &options->fit, error);
 	case KIND_PERCENT:
 		return parse_percent(spec, text, value, error);
 	case KIND_RGB:
@@ -481,6 +524,11 @@ void option_write(FILE *file, const struct options *options, const struct option
 		break;
 	case KIND_SEED:
 		fprintf(file, "%" PRIu64, *(const uint64_t *)value);
+		break;
+	case KIND_SIGMA:
+		fputs(isnan(options->fit.sigma) ? "free" : csv_number(number, options->fit.sigma), file);
+		if (!isnan(options->fit.sigma_y))
+			fprintf(file, ",%s", csv_number(number, options->fit.sigma_y));
 		break;
 	case KIND_NUMBER:
 	case KIND_GAMMA:
@@ -542,7 +590,8 @@ static bool has_default(const struct options *defaults, const struct option_spec
 	if (spec->kind == KIND_INT)
 		return *(const int *)value >= spec->min;
 	/* A free number is a default of a fit; a model needs one. */
-	return spec->recorded != NOT_RECORDED || (spec->kind != KIND_NUMBER && spec->kind != KIND_GAMMA) ||
+	return spec->recorded != NOT_RECORDED ||
+	       (spec->kind != KIND_NUMBER && spec->kind != KIND_GAMMA && spec->kind != KIND_SIGMA) ||
 	       !isnan(*(const double *)value);
 }
 
@@ -556,4 +605,11 @@ void option_describe(FILE *file, const struct options *defaults, const struct op
 		option_write(file, defaults, spec);
 		fputs(")", file);
 	}
+}
+
+const char *option_comma_hint(const char *text)
+{
+	const size_t before = strspn(text, "0123456789"), after = text[before] == ',' ? before + 1 : 0;
+	const bool one = before && after && text[after] && text[after + strspn(text + after, "0123456789")] == '\0';
+	return one ? " (a comma parts two numbers: 0.2 is written with a point)" : "";
 }

@@ -16,6 +16,7 @@ enum option_kind {
 	KIND_SEED,    /* uint64_t */
 	KIND_NUMBER,  /* double in [min, max] */
 	KIND_GAMMA,   /* the same, or inf */
+	KIND_SIGMA,   /* the same, or two of them with a comma between: fit.sigma and fit.sigma_y */
 	KIND_PERCENT, /* the same, perhaps with a % behind it */
 	KIND_RGB,     /* double[3], each in [min, max]; one number stands for all three */
 	KIND_SHARD,   /* struct shard, I/N with N up to max */
@@ -38,9 +39,10 @@ enum option_kind {
 enum recorded {
 	NOT_RECORDED,
 	RECORDED,
-	RECORDED_WITHIN,    /* only with --within */
-	RECORDED_GIVEN,     /* only where given */
-	RECORDED_ALGORITHM, /* only with another algorithm than the default */
+	RECORDED_WITHIN,      /* only with --within */
+	RECORDED_GIVEN,       /* only where given */
+	RECORDED_ANISOTROPIC, /* only with --anisotropic */
+	RECORDED_ALGORITHM,   /* only with another algorithm than the default */
 };
 
 struct option_spec {
@@ -69,5 +71,8 @@ void option_describe(FILE *file, const struct options *defaults, const struct op
 /* option_write - the value as it would be written on the command line; "yes" and "no" for one without an argument; "free" for a number
  * that is not fixed. */
 void option_write(FILE *file, const struct options *options, const struct option_spec *spec);
+
+/* option_comma_hint - for a refused text that may be one number with a decimal comma: what was read; else "". */
+const char *option_comma_hint(const char *text);
 
 #endif

@@ -3,27 +3,33 @@
 #include "data_readers/text_quote.h"
 #include "fit/cli/files.h"
 #include "fit/cli/messages.h"
+#include "fit/cli/nearest.h"
 #include "fit/cli/option_value.h"
 #include "fit/cli/outputs.h"
 #include "fit/cli/report.h"
+#include "fit/cli/terminal.h"
 #include "fit/cli/text_stream.h"
+#include "fit/cli/version.h"
 #include "fit/error/objective.h"
 #include "fit/results/csv.h"
 
+#include <errno.h>
 #include <getopt.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const struct command_text commands[COMMAND_COUNT] = {
-	[COMMAND_FIT] = {"fit", "PATH...", "fit MERL files",
-			 "Fits a Cook-Torrance model with each NDF to each MERL file. A directory stands for\n"
-			 "every *.binary in it. A terminal shows a readable table, a pipe gets CSV. With -o, rows\n"
+	[COMMAND_FIT] = {"fit", "PATH...", "fit measurements",
+			 "Fits a Cook-Torrance model with each NDF to each measurement. A directory stands for\n"
+			 "every file of a known format in it. A terminal shows a readable table, a pipe gets CSV. With "
+			 "-o, rows\n"
 			 "are appended as files are done and put in order at the end, so that Ctrl-C or a kill\n"
 			 "loses nothing that was done; --resume goes on from there.\n"},
 	[COMMAND_COMPARE] = {"compare", "PATH...", "errors of the NDFs side by side, per material and in all",
-			     "Fits MERL files or directories, or takes one result table (FILE.csv) as it is. Shows\n"
+			     "Fits measurements or directories, or takes one result table (FILE.csv) as it is. Shows\n"
 			     "the error of each NDF, the winner, by how much STD's error is lower than GGX's and\n"
 			     "Beckmann's (in % of theirs), then mean, median, worst and wins.\n"},
 	[COMMAND_MERGE] = {"merge", "CSV... [PATH...]", "join the tables of a batch's shares (fit --shard) into one",
@@ -35,7 +41,7 @@ static const struct command_text commands[COMMAND_COUNT] = {
 			   "may stand in several tables; the seconds are those of the first. Failed rows stay.\n"},
 	[COMMAND_BENCH] =
 		{"bench", "FILE", "error against run time, the default search beside others",
-		 "Fits one NDF to one MERL file, read already, with one algorithm after the other, each alone\n"
+		 "Fits one NDF to one measurement, read already, with one algorithm after the other, each alone\n"
 		 "on all threads, and shows the error that each had reached after 0.1, 0.3, 1, 3 and 10 s, at\n"
 		 "the end of --time, and the shapes it had evaluated. Every error is that of the full table:\n"
 		 "shapes that the default search judged by a sample of the table are judged anew afterwards.\n"
@@ -45,10 +51,10 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "parameters with the exact Lambda, and what the search took. integer and half-integer fit\n"
 		 "every gamma they have; where a form does not take a fixed --gamma, its row is empty.\n"},
 	[COMMAND_EVAL] = {"eval", "FILE", "error of given parameters, no fit",
-			  "Measures how far a model is from a MERL file, under every weight and metric. The model\n"
+			  "Measures how far a model is from a measurement, under every weight and metric. The model\n"
 			  "comes from options, or from rows of a result table (--from), which also bring their\n"
 			  "G, Fresnel term, bins and largest theta.\n"},
-	[COMMAND_INFO] = {"info", "FILE...", "what is in a MERL file: validity, ranges, suspects",
+	[COMMAND_INFO] = {"info", "PATH...", "what is in a measurement: format, validity, ranges, suspects",
 			  "Shows size, hash, valid, negative and non-finite entries, the range of the valid values\n"
 			  "above the horizon per channel (1/sr), the directional albedo of the data at 0, 30 and 60\n"
 			  "degrees with the share of the hemisphere that is measured, and what looks wrong.\n"},
@@ -88,16 +94,17 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "values, delta_e the mean CIEDE2000, ssim the structural similarity.\n"},
 	[COMMAND_PLOT] =
 		{"plot", "PATH...", "fits, or the course of searches, as plots by gnuplot",
-		 "Takes a result table (FILE.csv), or fits MERL files or directories. Writes into the directory\n"
+		 "Takes a result table (FILE.csv), or fits measurements or directories. Writes into the directory\n"
 		 "of -o the errors of all materials, sorted; and per material D and G1 of each fit against the\n"
 		 "NDF read off the data, slices, measured against fitted, and the error over theta_h and\n"
 		 "theta_d: each as PNG, SVG, CSV and the script that draws it. Of a trace (see fit --trace) it\n"
 		 "draws the error against time.\n"},
 	[COMMAND_REPORT] =
 		{"report", "PATH...", "fits as one HTML page that needs no other file",
-		 "Takes a result table (FILE.csv), or fits MERL files or directories. Writes index.html into the\n"
+		 "Takes a result table (FILE.csv), or fits measurements or directories. Writes index.html into the\n"
 		 "directory of -o: a summary, a table that can be sorted, and per material its spheres (see\n"
-		 "stdfit render), plots (see stdfit plot), parameters, their certainty, options and versions.\n"},
+		 "stdfit render), plots (see stdfit plot), parameters, their certainty, options and versions.\n"
+		 "Of more than 150 materials each has a page of its own, in materials/ beside index.html.\n"},
 };
 
 const struct command_text *options_command(enum command command)
@@ -114,6 +121,8 @@ static bool is_recorded(const struct options *options, const struct option_spec 
 		return !isnan(options->within);
 	case RECORDED_GIVEN:
 		return options->given[spec - option_specs];
+	case RECORDED_ANISOTROPIC:
+		return options->fit.anisotropic;
 	case RECORDED_ALGORITHM:
 		return options->fit.algorithm;
 	default:
@@ -144,42 +153,88 @@ char *options_text(const struct options *options)
 
 /* Help */
 
-enum { HELP_WIDTH = 21 };
+enum { HELP_WIDTH = 21, HELP_INDENT = HELP_WIDTH + 7 };
 
-static void print_option(const struct options *defaults, const struct option_spec *spec)
+/* False when out of memory. */
+static bool print_option(const struct options *defaults, const struct option_spec *spec, int width)
 {
 	char name[64];
+	struct text_stream stream;
 	snprintf(name, sizeof name, "--%s %s", spec->name, spec->argument ? spec->argument : "");
-	if (spec->letter)
-		printf("  -%c, %-*s ", spec->letter, HELP_WIDTH, name);
-	else
-		printf("      %-*s ", HELP_WIDTH, name);
-	option_describe(stdout, defaults, spec);
+	const char letter[] = {'-', (char)spec->letter, ',', '\0'};
+	if (!text_stream_open(&stream))
+		return false;
+	option_describe(stream.file, defaults, spec);
+	char *text = text_stream_close(&stream);
+	if (!text)
+		return false;
+	const int at = printf("  %3s %-*s ", spec->letter ? letter : "", HELP_WIDTH, name);
+	terminal_wrap(stdout, text, at, HELP_INDENT, width);
 	printf("\n");
+	free(text);
+	return true;
 }
 
-static void print_help(const struct options *defaults)
+/* Lines of a help are filled anew, but for those that begin with a blank or are empty. */
+static void print_filled(const char *text, int width)
+{
+	char line[2048];
+	size_t n = 0;
+	for (; *text; text++) {
+		const bool ends = *text == '\n' && (text[1] == '\0' || text[1] == '\n' || text[1] == ' ');
+		if (n + 1 < sizeof line)
+			line[n++] = *text == '\n' ? ' ' : *text;
+		if (!ends)
+			continue;
+		line[n - 1] = '\0';
+		if (line[0] == ' ')
+			fputs(line, stdout);
+		else
+			terminal_wrap(stdout, line, 0, 0, width);
+		fputs("\n", stdout);
+		n = 0;
+	}
+}
+
+static int print_help(const struct options *defaults)
 {
 	const enum command command = defaults->command;
-	printf("usage: stdfit %s%s%s [OPTION]... %s\n\n%s\noptions:\n", command == COMMAND_FIT ? "[" : "",
-	       commands[command].name, command == COMMAND_FIT ? "]" : "", commands[command].arguments,
-	       commands[command].help);
+	const int width = terminal_width(stdout);
+	printf("usage: stdfit %s%s%s [OPTION]... %s\n\n", command == COMMAND_FIT ? "[" : "", commands[command].name,
+	       command == COMMAND_FIT ? "]" : "", commands[command].arguments);
+	print_filled(commands[command].help, width);
+	printf("\noptions:\n");
 	for (const struct option_spec *spec = option_specs; spec->name; spec++)
-		if (option_applies(spec, command))
-			print_option(defaults, spec);
+		if (option_applies(spec, command) && !print_option(defaults, spec, width)) {
+			report_error("out of memory");
+			return EXIT_FAILED;
+		}
 	printf("  -h, %-*s this text\n", HELP_WIDTH, "--help");
+	printf("  -V, %-*s the version of the program and its libraries\n", HELP_WIDTH, "--version");
 	printf("\nexit code: 0 done, 1 some file failed, 2 wrong usage, 130 interrupted\n");
+	return EXIT_DONE;
 }
 
 void options_overview(void)
 {
-	printf("stdfit fits Cook-Torrance models with STD, GGX and Beckmann NDFs to measured BRDFs.\n\n");
-	for (enum command c = 0; c < COMMAND_COUNT; c++)
-		printf("  stdfit %-7s %-10s  %s\n", c == COMMAND_FIT ? "[fit]" : commands[c].name,
-		       commands[c].arguments, commands[c].summary);
-	printf("\n`stdfit COMMAND --help` tells its options, `stdfit --version` the versions of the program and its "
-	       "libraries.\n`stdfit --man` writes the manual page, `stdfit --completion bash` and `zsh` what these "
-	       "shells need\nto complete command lines.\n");
+	const int width = terminal_width(stdout);
+	terminal_wrap(stdout, "stdfit fits Cook-Torrance models with STD, GGX and Beckmann NDFs to measured BRDFs.", 0,
+		      0, width);
+	printf("\n\n");
+	for (enum command c = 0; c < COMMAND_COUNT; c++) {
+		enum { SUMMARY = 35 };
+		const int at = printf("  stdfit %-7s %-16s  ", c == COMMAND_FIT ? "[fit]" : commands[c].name,
+				      commands[c].arguments);
+		terminal_wrap(stdout, commands[c].summary, at, SUMMARY, width);
+		printf("\n");
+	}
+	printf("\n");
+	terminal_wrap(stdout,
+		      "`stdfit COMMAND --help` tells its options, `stdfit --version` the versions of the program and "
+		      "its libraries. `stdfit --man` writes the manual page, `stdfit --completion bash` and `zsh` what "
+		      "these shells need to complete command lines.",
+		      0, 0, width);
+	printf("\n");
 }
 
 enum command options_find_command(const char *name)
@@ -240,7 +295,9 @@ static void fill_getopt(enum command command, struct option *longs, char *letter
 {
 	*letters++ = ':'; /* tell a missing argument from an unknown option */
 	*letters++ = 'h';
+	*letters++ = 'V';
 	*longs++ = (struct option){"help", no_argument, NULL, 'h'};
+	*longs++ = (struct option){"version", no_argument, NULL, 'V'};
 	for (int i = 0; option_specs[i].name; i++) {
 		if (!option_applies(&option_specs[i], command))
 			continue;
@@ -272,22 +329,117 @@ static int take_option(struct options *options, int i, const char *text)
 		return -1;
 	char shown[TEXT_QUOTE_SIZE];
 	text_quote(text, shown, sizeof shown);
-	return options_usage(options->command, "bad value '%s' for --%s: %s", shown, option_specs[i].name, error.text);
+	return options_usage(options->command, "bad value '%s' for --%s: %s%s", shown, option_specs[i].name, error.text,
+			     option_comma_hint(text));
+}
+
+/* Names of the long options of a command, in the order of its table, then "help" and "version". */
+struct option_names {
+	enum command command;
+};
+
+static const char *option_name_at(const void *data, int i)
+{
+	const struct option_names *names = data;
+	for (const struct option_spec *spec = option_specs; spec->name; spec++)
+		if (option_applies(spec, names->command) && i-- == 0)
+			return spec->name;
+	return i == 0 ? "help" : i == 1 ? "version" : NULL;
+}
+
+/* "--n: --ndf, --no-diffuse" of the options that begin so, or of one that is like it; empty where there is neither. */
+static void hint_of(enum command command, const char *typed, char *hint, size_t size, int *n_beginning)
+{
+	const struct option_names names = {command};
+	const size_t length = strcspn(typed, "=");
+	char name[64];
+	*n_beginning = 0;
+	hint[0] = '\0';
+	for (int i = 0; option_name_at(&names, i); i++)
+		if (strncmp(option_name_at(&names, i), typed, length) == 0) {
+			const size_t used = strlen(hint);
+			snprintf(hint + used, size - used, "%s--%s", *n_beginning ? ", " : "",
+				 option_name_at(&names, i));
+			++*n_beginning;
+		}
+	if (*n_beginning > 1 || length >= sizeof name)
+		return;
+	memcpy(name, typed, length);
+	name[length] = '\0';
+	const int near = nearest_word(name, option_name_at, &names);
+	if (near >= 0)
+		snprintf(hint, size, ": did you mean --%s?", option_name_at(&names, near));
 }
 
 static int bad_option(enum command command, int code, char **argv)
 {
 	/* getopt_long leaves the letter of a short option. --help=x, of the long ones, has a letter too. */
-	const bool takes_none = optopt >= LONG_OPTION || (code == '?' && optopt == 'h');
+	const bool takes_none = optopt >= LONG_OPTION || (code == '?' && (optopt == 'h' || optopt == 'V'));
 	const bool is_short = optopt != 0 && optopt < LONG_OPTION && !takes_none;
 	const char letter[] = {'-', (char)optopt, '\0'};
-	char shown[TEXT_QUOTE_SIZE];
+	char shown[TEXT_QUOTE_SIZE], hint[256] = "";
+	int n_beginning = 0;
 	text_quote(is_short ? letter : argv[optind - 1], shown, sizeof shown);
-	return options_usage(command, "%s '%s'",
-			     code == ':'  ? "expected an argument behind"
-			     : takes_none ? "expected no argument in"
-					  : "unknown or ambiguous option",
-			     shown);
+	if (code == ':' || takes_none)
+		return options_usage(command, "%s '%s'",
+				     code == ':' ? "expected an argument behind" : "expected no argument in", shown);
+	if (!is_short)
+		hint_of(command, argv[optind - 1] + 2, hint, sizeof hint, &n_beginning);
+	if (n_beginning > 1)
+		return options_usage(command, "ambiguous option '%s': %s", shown, hint);
+	return options_usage(command, "unknown option '%s'%s", shown, hint);
+}
+
+static const char *command_name_at(const void *data, int i)
+{
+	(void)data;
+	return i < COMMAND_COUNT ? commands[i].name : NULL;
+}
+
+int options_unknown_command(const char *typed)
+{
+	const int near = nearest_word(typed, command_name_at, NULL);
+	char shown[TEXT_QUOTE_SIZE];
+	text_quote(typed, shown, sizeof shown);
+	if (near >= 0)
+		report_error("there is no command or file '%s': did you mean stdfit %s?", shown, commands[near].name);
+	else
+		report_error("there is no command or file '%s' (see stdfit --help)", shown);
+	return EXIT_USAGE;
+}
+
+/* Which of the words behind a command name files that are read. */
+static bool is_input(enum command command, int i, const char *word)
+{
+	/* merge has tables first, and says more of what is missing; export may take no more than a name. */
+	if (command == COMMAND_NDF || command == COMMAND_SAMPLE || command == COMMAND_SYNTH ||
+	    command == COMMAND_MERGE || command == COMMAND_EXPORT)
+		return false;
+	return !(command == COMMAND_CONVERT && i > 0) && strcmp(word, "-") != 0;
+}
+
+/* A file that was typed and is not there, before anything is done. -1: all are. */
+static int check_inputs(const struct options *options)
+{
+	const enum command command = options->command;
+	for (int i = 0; i < options->n_paths; i++) {
+		const char *path = options->path[i];
+		struct stat info;
+		if (!is_input(command, i, path) || lstat(path, &info) == 0 || (errno != ENOENT && errno != ENOTDIR))
+			continue;
+		char shown[TEXT_QUOTE_SIZE];
+		const int error = errno;
+		text_quote(path, shown, sizeof shown);
+		if (command == COMMAND_FIT && options_find_command(path) < COMMAND_COUNT)
+			return options_usage(command, "there is no file '%s', and a command comes first: stdfit %s ...",
+					     shown, shown);
+		if (command == COMMAND_FIT && i == 0 && !strpbrk(path, "./") &&
+		    nearest_word(path, command_name_at, NULL) >= 0)
+			return options_unknown_command(path);
+		report_error("cannot read '%s': %s", shown, strerror(error));
+		return EXIT_FAILED;
+	}
+	return -1;
 }
 
 static bool any_has_gamma(const struct fit_options *fit)
@@ -318,6 +470,11 @@ int options_check_fit(const struct options *options)
 	for (size_t i = 0; i < sizeof shape / sizeof *shape; i++)
 		if (!fit->specular && options_given(options, shape[i]))
 			return options_usage(options->command, "--%s means nothing with --no-specular", shape[i]);
+	if (!fit->anisotropic && (!isnan(fit->sigma_y) || !isnan(fit->angle)))
+		return options_usage(options->command, "--%s needs --anisotropic",
+				     isnan(fit->angle) ? "sigma SX,SY" : "angle");
+	if (fit->anisotropic && !isnan(fit->sigma) && isnan(fit->sigma_y))
+		return options_usage(options->command, "--sigma with --anisotropic takes SX,SY");
 	if (fit->fresnel == FRESNEL_NONE && options_given(options, "ior"))
 		return options_usage(options->command, "--ior means nothing with --fresnel none");
 	if (options_given(options, "gamma") && !any_has_gamma(fit))
@@ -370,8 +527,8 @@ static int find_standard_output(struct options *options)
 
 int options_parse(struct options *options, enum command command, int argc, char **argv, atomic_bool *cancel)
 {
-	struct option longs[OPTIONS_MAX + 2];
-	char letters[2 * OPTIONS_MAX + 3];
+	struct option longs[OPTIONS_MAX + 3];
+	char letters[2 * OPTIONS_MAX + 4];
 	fill_getopt(command, longs, letters);
 	*options = options_default(command);
 	opterr = 0;
@@ -379,7 +536,10 @@ int options_parse(struct options *options, enum command command, int argc, char 
 	for (int code; (code = getopt_long(argc, argv, letters, longs, NULL)) != -1;) {
 		if (code == 'h') {
 			const struct options defaults = options_default(command);
-			print_help(&defaults);
+			return print_help(&defaults);
+		}
+		if (code == 'V') {
+			version_print();
 			return EXIT_DONE;
 		}
 		if (code == '?' || code == ':')
@@ -399,6 +559,8 @@ int options_parse(struct options *options, enum command command, int argc, char 
 	int wrong = find_standard_output(options);
 	if (wrong < 0 && fits)
 		wrong = options_check_fit(options);
+	if (wrong < 0)
+		wrong = check_inputs(options);
 	return wrong >= 0 ? wrong : outputs_check(options, NULL, 0);
 }
 
@@ -425,7 +587,7 @@ const char *options_given_beside(const struct options *options, const char *cons
 /* An option for a term that the model does not have. */
 static int check_model(const struct options *options)
 {
-	static const char *const specular[] = {"sigma", "gamma", "ior", "k", "ndf", "gaf", "fresnel"};
+	static const char *const specular[] = {"sigma", "angle", "gamma", "ior", "k", "ndf", "gaf", "fresnel"};
 	const enum command command = options->command;
 	const struct ndf_class *ndf = options->fit.ndf[0];
 	if (options->fit.n_ndf != 1)
@@ -442,6 +604,8 @@ static int check_model(const struct options *options)
 				     ndf_has_gamma(ndf) ? "needs --gamma" : "has no --gamma");
 	if (options->fit.fresnel == FRESNEL_NONE && options_given(options, "ior"))
 		return options_usage(command, "--ior means nothing with --fresnel none");
+	if (isnan(options->fit.sigma_y) && options_given(options, "angle"))
+		return options_usage(command, "--angle needs --sigma SX,SY");
 	if (options->fit.fresnel != FRESNEL_CONDUCTOR && options_given(options, "k"))
 		return options_usage(command, "--k means nothing without --fresnel conductor");
 	return -1;
@@ -460,7 +624,12 @@ int options_model(const struct options *options, struct cook_torrance *model)
 	memcpy(model->kd, options->kd, sizeof model->kd);
 	memcpy(model->ks, options->ks, sizeof model->ks);
 	const double sigma = isnan(fit->sigma) ? 1 : fit->sigma, gamma = isnan(fit->gamma) ? 2 : fit->gamma;
-	const struct shape shape = {.sigma = sigma, .gamma = gamma};
+	struct shape shape = {.sigma = sigma, .gamma = gamma};
+	if (!isnan(fit->sigma_y)) {
+		shape.sigma = sqrt(sigma * fit->sigma_y);
+		shape.stretch = log(sigma / fit->sigma_y);
+		shape.angle = isnan(fit->angle) ? 0 : fit->angle;
+	}
 	if (shape_ndf(&shape, fit->ndf[0], fit->lambda, &model->ndf) != STATUS_OK)
 		return options_usage(options->command, "--ndf %s does not allow these parameters",
 				     ndf_name(fit->ndf[0]));

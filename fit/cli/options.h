@@ -105,6 +105,9 @@ const struct command_text *options_command(enum command command);
 /* options_default - the default options of a command. */
 struct options options_default(enum command command);
 
+/* options_unknown_command - reports a first word that is neither a command nor a file, with the nearest command. Returns
+ * EXIT_USAGE. */
+int options_unknown_command(const char *typed);
 /* options_overview - the help of the program as a whole, on standard output. */
 void options_overview(void);
 /* options_find_command - the command of this name, COMMAND_COUNT when there is none. */

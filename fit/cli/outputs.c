@@ -35,14 +35,25 @@ static char *backup_of(const char *name)
 	return backup;
 }
 
+/* The last path of synth and convert is their output. */
+static bool has_output_path(const struct options *options)
+{
+	return (options->command == COMMAND_SYNTH && options->n_paths == 1) ||
+	       (options->command == COMMAND_CONVERT && options->n_paths == 2);
+}
+
+static int count_inputs(const struct options *options)
+{
+	return options->n_paths - has_output_path(options);
+}
+
 /* Whether a name of the command line, or one of `path`, is the file `name`. */
 static bool is_read(const struct options *options, char *const *path, size_t n, const char *name)
 {
-	const int n_inputs = options->command == COMMAND_SYNTH ? 0 : options->n_paths; /* synth's path is its output */
 	bool read = options->from && files_same(options->from, name);
 	/* A light has a built-in name or is a file. */
 	read |= options->environment && !access(options->environment, F_OK) && files_same(options->environment, name);
-	for (int i = 0; i < n_inputs && !read; i++)
+	for (int i = 0; i < count_inputs(options) && !read; i++)
 		read = files_same(options->path[i], name);
 	for (size_t i = 0; i < n && !read; i++)
 		read = files_same(path[i], name);
@@ -52,10 +63,13 @@ static bool is_read(const struct options *options, char *const *path, size_t n, 
 int outputs_check(const struct options *options, char *const *path, size_t n)
 {
 	const char *output = options->picture ? options->picture : options->output, *trace = options->trace;
+	const bool last = has_output_path(options);
+	if (last)
+		output = options->path[options->n_paths - 1];
 	if (options->to_standard_output || (output && !strcmp(output, "-")))
 		output = "/dev/stdout";
 	if (output && is_read(options, path, n, output))
-		return options_usage(options->command, "--output names a file that is to be read");
+		return options_usage(options->command, "%s names a file that is to be read", last ? "OUT" : "--output");
 	if (trace && is_read(options, path, n, trace))
 		return options_usage(options->command, "--trace names a file that is to be read");
 	if (output && trace && files_same(output, trace))

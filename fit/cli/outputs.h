@@ -6,10 +6,10 @@
 #include "fit/cli/options.h"
 #include "fit/results/result.h"
 
-/* outputs_check - whether the files that --output and --trace name are other files than what is to be read: the paths of
- * the command line, --from, --environment, and the n paths in `path`, which the command has found in directories and
- * tables (none: n = 0). Where the command keeps an older file as FILE~, that must be no input, either.
- * Directories that are outputs: output_directory_spares().
+/* outputs_check - whether the files that --output and --trace name, or the last path of synth and convert, are other
+ * files than what is to be read: the paths of the command line, --from, --environment, and the n paths in `path`, which
+ * the command has found in directories and tables (none: n = 0). Where the command keeps an older file as FILE~, that
+ * must be no input, either. Directories that are outputs: output_directory_spares().
  * Returns -1, or the exit code to end with; what is wrong is then reported. */
 MUST_CHECK int outputs_check(const struct options *options, char *const *path, size_t n);
 

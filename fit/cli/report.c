@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/cli/report.h"
 #include "data_readers/text_quote.h"
+#include "fit/cli/terminal.h"
 #include "fit/results/result.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* JSON */
 
@@ -13,13 +15,14 @@ static void json_string(FILE *file, const char *text)
 {
 	fputc('"', file);
 	while (*text) {
-		const size_t length = text_printable(text);
+		uint32_t code;
+		const size_t length = text_character(text, &code);
 		if (*text == '"' || *text == '\\')
 			fprintf(file, "\\%c", *text);
-		else if (length)
+		else if (text_printable(text))
 			fwrite(text, 1, length, file);
 		else
-			fprintf(file, "\\u%04x", *text > 0 ? (unsigned)*text : 0xfffdu);
+			fprintf(file, "\\u%04x", length ? (unsigned)code : 0xfffdu);
 		text += length ? length : 1;
 	}
 	fputc('"', file);
@@ -86,23 +89,77 @@ static const char *shown_cell(char text[SHOWN_SIZE], const char *cell, bool numb
 	return text;
 }
 
-void report_table(FILE *file, const struct csv_table *table)
+enum { GAP = 2, HEADING_LINES = 4 };
+
+/* Line `line` of a heading that is broken at its underscores. */
+static const char *heading_line(const char *name, int line, char text[SHOWN_SIZE])
 {
-	int *width = calloc((size_t)table->n_columns, sizeof(*width));
+	text[0] = '\0';
+	for (; line > 0 && name; line--) {
+		name = strchr(name, '_');
+		name += name != NULL;
+	}
+	if (name)
+		snprintf(text, SHOWN_SIZE, "%.*s", (int)strcspn(name, "_"), name);
+	return text;
+}
+
+/* The columns that cells need; the heading whole, or broken. Returns the width of the table. */
+static int column_widths(const struct csv_table *table, bool broken, int *width)
+{
 	char text[SHOWN_SIZE];
-	for (int c = 0; c < table->n_columns && width; c++) {
-		width[c] = text_width(table->column[c].name);
+	int sum = 0;
+	for (int c = 0; c < table->n_columns; c++) {
+		width[c] = 0;
+		for (int line = 0; line < (broken ? HEADING_LINES : 1); line++) {
+			const char *heading = broken ? heading_line(table->column[c].name, line, text)
+						     : shown_cell(text, table->column[c].name, false);
+			width[c] = text_width(heading) > width[c] ? text_width(heading) : width[c];
+		}
 		for (size_t i = 0; i < table->n_rows; i++) {
 			const int needed = text_width(shown_cell(text, table->row[i][c], table->column[c].number));
 			width[c] = needed > width[c] ? needed : width[c];
 		}
+		sum += width[c] + (c ? GAP : 0);
 	}
-	for (size_t i = 0; i <= table->n_rows; i++) {
+	return sum;
+}
+
+static void print_heading(FILE *file, const struct csv_table *table, bool broken, const int *width)
+{
+	char text[SHOWN_SIZE];
+	bool more = true;
+	for (int line = 0; more; line++) {
+		more = false;
 		for (int c = 0; c < table->n_columns; c++) {
 			const struct csv_column *column = &table->column[c];
-			const char *cell = i ? shown_cell(text, table->row[i - 1][c], column->number) : column->name;
+			const char *heading =
+				broken ? heading_line(column->name, line, text) : shown_cell(text, column->name, false);
 			fputs(c ? "  " : "", file);
-			print_padded(file, cell, width ? width[c] : 0, column->number);
+			print_padded(file, heading, width[c], column->number);
+			char next[SHOWN_SIZE];
+			more |= broken && line + 1 < HEADING_LINES && *heading_line(column->name, line + 1, next);
+		}
+		fputc('\n', file);
+	}
+}
+
+void report_table(FILE *file, const struct csv_table *table)
+{
+	int *width = calloc((size_t)table->n_columns, sizeof(*width));
+	char text[SHOWN_SIZE];
+	if (!width)
+		return;
+	/* Where a terminal is too narrow for long headings, they are broken. */
+	const bool broken = isatty(fileno(file)) && column_widths(table, false, width) > terminal_width(file);
+	column_widths(table, broken, width);
+	print_heading(file, table, broken, width);
+	for (size_t i = 0; i < table->n_rows; i++) {
+		for (int c = 0; c < table->n_columns; c++) {
+			const struct csv_column *column = &table->column[c];
+			fputs(c ? "  " : "", file);
+			print_padded(file, shown_cell(text, table->row[i][c], column->number), width[c],
+				     column->number);
 		}
 		fputc('\n', file);
 	}
@@ -153,7 +210,14 @@ static void print_remark(FILE *file, const char *status)
 	}
 }
 
-static void print_fit(FILE *file, char *const *row)
+/* A terminal too narrow for all columns gets the factors on a line of their own. */
+static bool is_narrow(FILE *file)
+{
+	enum { WHOLE = 126 };
+	return isatty(fileno(file)) && terminal_width(file) < WHOLE;
+}
+
+static void print_fit(FILE *file, char *const *row, bool narrow)
 {
 	static const struct {
 		enum result_column column;
@@ -168,7 +232,9 @@ static void print_fit(FILE *file, char *const *row)
 	char text[SHOWN_SIZE];
 	text_quote(row[RESULT_MATERIAL], text, sizeof text);
 	print_padded(file, text, 22, false);
-	fprintf(file, "  %-8s", row[RESULT_NDF]);
+	fputs("  ", file);
+	text_quote(row[RESULT_NDF], text, sizeof text);
+	print_padded(file, text, 8, false);
 	if (result_failed(row)) {
 		text_quote(row[RESULT_STATUS], text, sizeof text);
 		fprintf(file, "  %s\n", text);
@@ -179,9 +245,10 @@ static void print_fit(FILE *file, char *const *row)
 		snprintf(text, sizeof text, number[i].format, x);
 		fprintf(file, " %*s", number[i].width, isnan(x) ? "-" : text);
 	}
-	fprintf(file, "  %-20s", rgb_text(text, row, RESULT_KD_R));
-	fprintf(file, "  %-20s", rgb_text(text, row, RESULT_KS_R));
-	fprintf(file, "%s%s", *row[RESULT_AT_BOUND] ? "  " : "", row[RESULT_AT_BOUND]);
+	fprintf(file, narrow ? "\n    kd %-20s" : "  %-20s", rgb_text(text, row, RESULT_KD_R));
+	fprintf(file, narrow ? "  ks %-20s" : "  %-20s", rgb_text(text, row, RESULT_KS_R));
+	text_quote(row[RESULT_AT_BOUND], text, sizeof text);
+	fprintf(file, "%s%s", !*text ? "" : narrow ? "\n    at bound: " : "  ", text);
 	print_remark(file, row[RESULT_STATUS]);
 	if (!strcmp(row[RESULT_ENERGY], "gain"))
 		fputs("  (sends back more light than it gets)", file);
@@ -190,9 +257,12 @@ static void print_fit(FILE *file, char *const *row)
 
 void report_fits(FILE *file, const struct csv_table *results, bool heading)
 {
-	if (heading)
+	const bool narrow = is_narrow(file);
+	if (heading && narrow)
+		fprintf(file, "%-22s  %-8s %9s %9s %8s %8s\n", "material", "ndf", "error", "sigma", "gamma", "n");
+	else if (heading)
 		fprintf(file, "%-22s  %-8s %9s %9s %8s %8s  %-20s  %-20s  %s\n", "material", "ndf", "error", "sigma",
 			"gamma", "n", "kd", "ks", "at bound");
 	for (size_t i = 0; i < results->n_rows; i++)
-		print_fit(file, results->row[i]);
+		print_fit(file, results->row[i], narrow);
 }

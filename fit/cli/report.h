@@ -6,7 +6,7 @@
 #include "fit/results/csv.h"
 
 /* report_json - the table as an array of objects: numbers as numbers, empty cells as null, inf as "inf";
- * bytes that are no printable UTF-8 as U+FFFD. */
+ * control characters as \uNNNN, bytes that are no UTF-8 as U+FFFD. */
 void report_json(FILE *file, const struct csv_table *table);
 /* report_table - columns under each other, numbers in five digits. */
 void report_table(FILE *file, const struct csv_table *table);

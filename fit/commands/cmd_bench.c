@@ -167,8 +167,6 @@ static enum status read_file(struct bench *b)
 	const struct options *options = b->options;
 	const struct read_options reading = options_reading(options, options->fit.threads);
 	enum status status = measurement_read(options->path[0], &reading, &b->measurement, &b->error);
-	if (status == STATUS_OK)
-		status = measurement_require_table(&b->measurement, "bench", &b->error);
 	if (status != STATUS_OK)
 		return status;
 	b->material = result_material(options->path[0]);

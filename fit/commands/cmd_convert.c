@@ -4,9 +4,8 @@
 #include "data_readers/merl.h"
 #include "data_readers/resample.h"
 #include "data_readers/samples_csv.h"
-#include "fit/cli/files.h"
 #include "fit/cli/messages.h"
-#include "fit/cli/options.h"
+#include "fit/cli/outputs.h"
 #include "fit/commands/commands.h"
 
 #include <string.h>
@@ -111,12 +110,11 @@ int cmd_convert(int argc, char **argv, atomic_bool *cancel)
 	int code = options_parse(&options, COMMAND_CONVERT, argc, argv, cancel);
 	if (code < 0 && options.n_paths != 2)
 		code = options_usage(COMMAND_CONVERT, "expected IN and OUT, found %d names", options.n_paths);
-	if (code < 0 && !ends_with(options.path[1], ".csv") && !ends_with(options.path[1], ".binary"))
-		code = options_usage(COMMAND_CONVERT, "expected OUT.csv or OUT.binary");
-	if (code < 0 && ends_with(options.path[1], ".csv") && options_given(&options, "phi"))
+	if (code < 0 && !ends_with(options.path[1], ".csv") && !ends_with(options.path[1], ".binary") &&
+	    !outputs_standard(options.path[1]))
+		code = options_usage(COMMAND_CONVERT, "expected OUT.csv or OUT.binary, or - for a CSV");
+	if (code < 0 && !ends_with(options.path[1], ".binary") && options_given(&options, "phi"))
 		code = options_usage(COMMAND_CONVERT, "--phi means nothing for a CSV");
-	if (code < 0 && files_same(options.path[0], options.path[1]))
-		code = options_usage(COMMAND_CONVERT, "OUT names the file that is to be read");
 	if (code >= 0)
 		return code;
 	const enum status status = convert(&options, &error);

@@ -202,6 +202,8 @@ int cmd_fit(int argc, char **argv, atomic_bool *cancel)
 	       : nothing       ? EXIT_FAILED
 	       : options.trace ? run_traced(&sink, &batch)
 			       : run(&sink, &batch);
+	if (code == EXIT_INTERRUPTED && sink.stored && !options.quiet)
+		report_error("interrupted: the same command with --resume goes on");
 	csv_table_free(&sink.rows);
 	if (sink.stored)
 		store_close(&sink.store);

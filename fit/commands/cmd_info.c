@@ -189,13 +189,16 @@ int cmd_info(int argc, char **argv, atomic_bool *cancel)
 	if (code >= 0)
 		return code;
 	struct csv_table table = csv_table_make(columns, INFO_COLUMNS);
-	code = EXIT_DONE;
-	for (int i = 0; i < options.n_paths && !*cancel; i++) {
-		if (inspect(&table, &options, options.path[i], &error) != STATUS_OK) {
+	struct files files;
+	code = files_collect(&files, options.path, options.n_paths, options.recursive, cancel) ? EXIT_FAILED
+											       : EXIT_DONE;
+	for (size_t i = 0; i < files.n && !*cancel; i++) {
+		if (inspect(&table, &options, files.path[i], &error) != STATUS_OK) {
 			report_error("%s", error.text);
 			code = EXIT_FAILED;
 		}
 	}
+	files_free(&files);
 	report_output(&table, options_show(&options), report_records);
 	csv_table_free(&table);
 	return *cancel ? EXIT_INTERRUPTED : code;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* stdfit report - fits as one HTML page that holds all it needs: written to DIR/index.html, pictures by way of a scratch
- * directory beside it. */
+/* stdfit report - fits as one HTML page that holds all it needs, or of many materials as one page each and one that leads to
+ * them: written to DIR/index.html and DIR/materials/, pictures by way of a scratch directory beside them. */
 #include "data_readers/atomic_file.h"
 #include "fit/cli/lighting.h"
 #include "fit/cli/messages.h"
@@ -162,6 +162,47 @@ static bool draw_material(struct report *r, const struct materials *materials, s
 	return spheres && plots;
 }
 
+/* The file of a material, where each has one of its own. */
+static enum status material_file(struct report *r, const struct page *page, size_t m, struct atomic_file *file,
+				 struct page *own, struct error *error)
+{
+	char *directory = NULL, *name = NULL, *path = NULL;
+	enum status status = output_directory_make(r->options->output, PAGE_DIRECTORY, &directory, error);
+	if (status == STATUS_OK && asprintf(&name, "%s.html", page->materials->material[m].file_name) < 0) {
+		name = NULL;
+		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
+	}
+	if (status == STATUS_OK)
+		status = output_directory_path(directory, name, &path, error);
+	if (status == STATUS_OK)
+		status = atomic_file_open(file, path, error);
+	if (status == STATUS_OK)
+		page_of_material(page, m, file->stream, own);
+	free(directory);
+	free(name);
+	free(path);
+	return status;
+}
+
+static enum status put_material(struct report *r, const struct page *page, size_t m, const struct page_picture *picture,
+				const char *missing, struct error *error)
+{
+	struct atomic_file file;
+	struct page own;
+	if (!page->divided)
+		return page_material(page, m, picture, PICTURES, missing, error);
+	enum status status = material_file(r, page, m, &file, &own, error);
+	if (status != STATUS_OK)
+		return status;
+	status = page_material(&own, m, picture, PICTURES, missing, error);
+	if (status == STATUS_OK) {
+		page_end(&own);
+		return atomic_file_commit(&file, error);
+	}
+	atomic_file_abort(&file);
+	return status;
+}
+
 static enum status add_material(struct report *r, const struct page *page, size_t m, struct error *error)
 {
 	struct page_picture picture[PICTURES];
@@ -171,7 +212,7 @@ static enum status add_material(struct report *r, const struct page *page, size_
 	const bool drawn = draw_material(r, page->materials, m, picture, &caption, &why);
 	enum status status = STATUS_INTERRUPTED;
 	if (!*r->options->cancel)
-		status = page_material(page, m, picture, PICTURES, drawn ? NULL : why.text, error);
+		status = put_material(r, page, m, picture, drawn ? NULL : why.text, error);
 	for (int p = 0; p < PICTURES; p++)
 		free(picture[p].path);
 	free(caption);

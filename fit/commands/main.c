@@ -5,17 +5,15 @@
 #include "fit/cli/messages.h"
 #include "fit/cli/options.h"
 #include "fit/cli/stack.h"
+#include "fit/cli/version.h"
 #include "fit/commands/commands.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <gsl/gsl_errno.h>
-#include <gsl/gsl_version.h>
-#include <nlopt.h>
 #include <signal.h>
 #include <string.h>
 #include <unistd.h>
-#include <xxhash.h>
 
 /* A signal handler reaches nothing else. */
 static atomic_bool cancel;
@@ -49,20 +47,6 @@ static void occupy_standard_streams(void)
 		close(fd);
 }
 
-static void print_version(void)
-{
-	int major, minor, bugfix;
-	nlopt_version(&major, &minor, &bugfix);
-	const unsigned xxh = XXH_versionNumber();
-	printf("stdfit %s (%s %s; nlopt %d.%d.%d, GSL %s, xxhash %u.%u.%u)\n", STDFIT_VERSION,
-#ifdef __clang__
-	       "clang", __clang_version__,
-#else
-	       "gcc", __VERSION__,
-#endif
-	       major, minor, bugfix, gsl_version, xxh / 10000, xxh / 100 % 100, xxh % 100);
-}
-
 static int completion(const char *shell)
 {
 	if (completion_write(stdout, shell))
@@ -71,30 +55,63 @@ static int completion(const char *shell)
 	return EXIT_USAGE;
 }
 
-static int dispatch(int argc, char **argv)
+static int run_command(enum command command, int argc, char **argv)
 {
 	static int (*const run[COMMAND_COUNT])(int, char **, atomic_bool *) = {
 #define COMMAND_ENTRY(NAME, name) [COMMAND_##NAME] = cmd_##name,
 		COMMANDS(COMMAND_ENTRY)
 #undef COMMAND_ENTRY
 	};
-	const char *first = argc > 1 ? argv[1] : "";
-	if (!strcmp(first, "--version")) {
-		print_version();
+	return run[command](argc, argv, &cancel);
+}
+
+static bool is_file(const char *name)
+{
+	return access(name, F_OK) == 0;
+}
+
+/* `stdfit help` and `stdfit help COMMAND`. */
+static int help(const char *name)
+{
+	if (!name) {
+		options_overview();
 		return EXIT_DONE;
 	}
+	const enum command command = options_find_command(name);
+	char word[] = "help", option[] = "--help", *const argv[] = {word, option, NULL};
+	return command < COMMAND_COUNT ? run_command(command, 2, (char **)argv) : options_unknown_command(name);
+}
+
+/* What the first word asks for beside the commands; -1: nothing. The words without a dash may also be files. */
+static int about(const char *first, const char *second)
+{
+	if (!strcmp(first, "--version") || !strcmp(first, "-V") || (!strcmp(first, "version") && !is_file(first))) {
+		version_print();
+		return EXIT_DONE;
+	}
+	if (!strcmp(first, "--help") || !strcmp(first, "-h"))
+		return help(NULL);
+	if (!strcmp(first, "help") && !is_file(first))
+		return help(second);
 	if (!strcmp(first, "--man")) {
 		manual_write(stdout);
 		return EXIT_DONE;
 	}
-	if (!strcmp(first, "--completion"))
-		return completion(argc > 2 ? argv[2] : "");
-	if (!strcmp(first, "--help") || !strcmp(first, "-h")) {
+	return strcmp(first, "--completion") ? -1 : completion(second ? second : "");
+}
+
+static int dispatch(int argc, char **argv)
+{
+	if (argc < 2) {
 		options_overview();
-		return EXIT_DONE;
+		return EXIT_USAGE;
 	}
-	const enum command command = options_find_command(first);
-	return command < COMMAND_COUNT ? run[command](argc - 1, argv + 1, &cancel) : cmd_fit(argc, argv, &cancel);
+	const int code = about(argv[1], argv[2]);
+	if (code >= 0)
+		return code;
+	const enum command command = options_find_command(argv[1]);
+	return command < COMMAND_COUNT ? run_command(command, argc - 1, argv + 1)
+				       : run_command(COMMAND_FIT, argc, argv);
 }
 
 int main(int argc, char **argv)

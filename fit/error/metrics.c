@@ -182,7 +182,7 @@ static enum status sum_all_scattered(const struct geometry *g, const struct scat
 #pragma omp parallel for num_threads(threads) schedule(dynamic) if (threads > 1)
 	for (size_t chunk = 0; chunk < chunks; chunk++)
 		for (size_t n = chunk * CHUNK; n < (chunk + 1) * CHUNK && n < s->n; n++)
-			if (entry_in_range(s->wi[n], s->wo[n], min_cos))
+			if (scattered_takes_part(s, &g->criterion, min_cos, n))
 				sum_scattered(s, model, n, &sums[chunk]);
 	for (size_t chunk = 0; chunk < chunks; chunk++)
 		add_sums(all, &sums[chunk]);
@@ -258,7 +258,7 @@ static void sum_scattered_rows(const struct geometry *g, const struct scattered 
 		const struct bins_indices at = bins_indices(BINS_NODE, halfdiff_from_dirs(s->wi[n], s->wo[n]));
 		const int i = (int)fmin(at.i + 0.5, MERL_THETA_H - 1), j = (int)fmin(at.j + 0.5, MERL_THETA_D - 1);
 
-		if (entry_in_range(s->wi[n], s->wo[n], min_cos))
+		if (scattered_takes_part(s, &g->criterion, min_cos, n))
 			sum_scattered(s, model, n, &sums[j + MERL_THETA_D * i]);
 	}
 }

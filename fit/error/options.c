@@ -31,6 +31,8 @@ struct fit_options fit_options_default(void)
 		.ior = NAN,
 		.gamma = NAN,
 		.sigma = NAN,
+		.sigma_y = NAN,
+		.angle = NAN,
 		.threads = omp_get_max_threads() < FIT_THREADS_MAX ? omp_get_max_threads() : FIT_THREADS_MAX,
 		.time_s = 10};
 	static const char *const names[] = {"std", "ggx", "beckmann"};

@@ -41,6 +41,7 @@ static inline bool criterion_equal(const struct criterion *a, const struct crite
 /* Domain of the fit. */
 #define FIT_SIGMA_MIN 1e-4
 #define FIT_SIGMA_MAX 4.0
+#define FIT_RATIO_MAX 50.0 /* of sigma_x and sigma_y */
 #define FIT_GAMMA_MIN 1.5001
 #define FIT_GAMMA_MAX 1000.0
 #define FIT_IOR_MIN 1.0001
@@ -75,6 +76,9 @@ struct fit_options {
 	bool specular; /* false: ks = 0, no shape is searched */
 	bool gray;     /* one kd and one ks for the three channels */
 	double ior, gamma, sigma; /* fixed value, or NaN */
+	bool anisotropic;         /* sigma_x and sigma_y may differ; the isotropic fit is made beside it */
+	double sigma_y;           /* anisotropic: fixed with sigma, which is sigma_x then, or NaN */
+	double angle;             /* anisotropic: fixed azimuth of the axis of sigma_x, degrees, or NaN */
 	int starts;               /* extra random starts, which skip the coarsest table; 0 by default */
 	uint64_t seed;
 	int threads;                       /* threads of one fit; changes no result */

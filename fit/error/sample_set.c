@@ -263,7 +263,7 @@ static void put(struct sample_set *table, const struct measurement *measurement,
 
 		for (int a = 0; a < members; a++) {
 			value[a * KERNEL_BLOCK] = w * (measurement->value[c][at[a]] * unit);
-			sum[c] += (double)value[a * KERNEL_BLOCK] / table->unit;
+			sum[c] += (double)value[a * KERNEL_BLOCK];
 		}
 	}
 }
@@ -305,7 +305,7 @@ static void take_values(struct sample_set *table, const struct measurement *meas
 	for (int i = 0; i < MERL_THETA_H; i++) {
 		table->sum_w += row[i].sum_w;
 		for (int c = 0; c < MERL_CHANNELS; c++)
-			table->sum[c] += row[i].sum[c];
+			table->sum[c] += row[i].sum[c] / table->unit;
 	}
 }
 

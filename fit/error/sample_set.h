@@ -121,4 +121,13 @@ static inline bool entry_is_missing(const struct measurement *measurement, const
 	       measurement->value[2][at] == 0;
 }
 
+/* scattered_takes_part - whether entry n is in range and not missing. min_cos: of the criterion's max_theta. */
+static inline bool scattered_takes_part(const struct scattered *s, const struct criterion *criterion, double min_cos,
+					size_t n)
+{
+	if (criterion->zero_is_missing && s->value[0][n] == 0 && s->value[1][n] == 0 && s->value[2][n] == 0)
+		return false;
+	return entry_in_range(s->wi[n], s->wo[n], min_cos);
+}
+
 #endif

@@ -29,14 +29,14 @@ static int by_order(const void *a, const void *b)
 }
 
 /* Returns how many entries take part; 0 with *place NULL: out of memory. */
-static size_t list_places(const struct scattered *s, double max_theta, struct place **place)
+static size_t list_places(const struct scattered *s, const struct criterion *criterion, struct place **place)
 {
-	const double min_cos = max_theta_cos(max_theta);
+	const double min_cos = max_theta_cos(criterion->max_theta);
 	size_t count = 0;
 
 	*place = malloc(s->n * sizeof **place);
 	for (size_t n = 0; *place && n < s->n; n++)
-		if (entry_in_range(s->wi[n], s->wo[n], min_cos) && count < INT_MAX)
+		if (scattered_takes_part(s, criterion, min_cos, n) && count < INT_MAX)
 			(*place)[count++] = (struct place){squared_slope(vec3_add(s->wi[n], s->wo[n])), (uint32_t)n};
 	if (*place)
 		qsort(*place, count, sizeof **place, by_order);
@@ -94,7 +94,7 @@ static void put(struct sample_set *table, size_t n, uint32_t entry)
 enum status sample_set_scattered(struct sample_set *table, const struct geometry *g, const struct scattered *s)
 {
 	struct place *place;
-	const size_t count = list_places(s, g->criterion.max_theta, &place);
+	const size_t count = list_places(s, &g->criterion, &place);
 	enum status status = place ? STATUS_OK : STATUS_NO_MEMORY;
 
 	if (status == STATUS_OK && count == 0)

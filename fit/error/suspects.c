@@ -19,6 +19,7 @@
 #define COSINE_LEFT 0.35 /* what is left of the asymmetry when the cosine is taken out */
 #define COSINE_SLOPE 0.2 /* of ln value against ln(cos_i cos_o) at a fixed theta_h; 0 for a diffuse table, else below */
 #define INTERLEAVED 0.5  /* differences over three entries against those over one; 2.9 */
+#define CONSTANT 0.6     /* of the rows */
 #define SPIKE 5.0f       /* times each neighbour; none is */
 
 enum {
@@ -46,9 +47,9 @@ struct tally {
 	double min_cos;
 	bool zero_is_missing;
 	size_t n, n_zero, n_masked, n_spikes;
-	double lag_1, lag_3, green; /* sums of differences along phi_d, and of values */
-	float max[MERL_CHANNELS];
-	int max_rows[MERL_CHANNELS];
+	double lag_1, lag_3, green;          /* sums of differences along phi_d, and of values */
+	int32_t max[MERL_CHANNELS];          /* order_of() the largest value */
+	int n_rows, max_rows[MERL_CHANNELS]; /* rows of half a turn; those that have the largest value */
 	double all[CLASSES], zero[CLASSES], masked[CLASSES]; /* by the larger of theta_i and theta_o */
 	float sampled[SAMPLED];                              /* sums over the channels, not 0 */
 	size_t n_sampled;
@@ -80,24 +81,39 @@ static struct half_row half_row_at(const struct tally *t, int i, int j, int star
 	return row;
 }
 
+/* Floats that are not negative are in the order of their bits, as whole numbers; NaN counts as 0. The largest of whole
+ * numbers is found with vectors by any compiler. */
+static int32_t order_of(float value)
+{
+	int32_t bits;
+
+	memcpy(&bits, &value, sizeof bits);
+	return isnan(value) ? 0 : bits;
+}
+
 static void count_values(struct tally *t, const struct half_row *row)
 {
 	const float *restrict r = row->value[0], *restrict g = row->value[1], *restrict b = row->value[2];
 	int zero = 0, masked = 0;
-	float max_r = 0, max_g = 0, max_b = 0;
+	int32_t max[MERL_CHANNELS], max_r = 0, max_g = 0, max_b = 0;
 
 #pragma omp simd reduction(+ : zero, masked) reduction(max : max_r, max_g, max_b)
 	for (int k = row->first; k <= row->last; k++) {
 		zero += r[k] + g[k] + b[k] == 0;
 		masked += isnan(r[k]);
-		max_r = r[k] > max_r ? r[k] : max_r;
-		max_g = g[k] > max_g ? g[k] : max_g;
-		max_b = b[k] > max_b ? b[k] : max_b;
+		const int32_t order_r = order_of(r[k]), order_g = order_of(g[k]), order_b = order_of(b[k]);
+
+		max_r = order_r > max_r ? order_r : max_r;
+		max_g = order_g > max_g ? order_g : max_g;
+		max_b = order_b > max_b ? order_b : max_b;
 	}
 	t->n += (size_t)(row->last - row->first + 1);
 	t->n_zero += (size_t)zero;
 	t->n_masked += (size_t)masked;
-	const float max[MERL_CHANNELS] = {max_r, max_g, max_b};
+	t->n_rows++;
+	max[0] = max_r;
+	max[1] = max_g;
+	max[2] = max_b;
 	for (int c = 0; c < MERL_CHANNELS; c++) {
 		if (max[c] > t->max[c]) {
 			t->max[c] = max[c];
@@ -432,7 +448,7 @@ static unsigned judge_directions(const struct tally *t, struct suspects *s)
 	return s->cosine ? SUSPECT_COSINE : left[0] > ASYMMETRY ? SUSPECT_ASYMMETRIC : 0;
 }
 
-static unsigned judge_values(struct tally *t, struct suspects *s)
+static unsigned judge_values(const struct tally *t, struct suspects *s)
 {
 	unsigned found = 0;
 
@@ -441,12 +457,10 @@ static unsigned judge_values(struct tally *t, struct suspects *s)
 		found |= SUSPECT_SPIKES;
 	if (t->lag_3 < INTERLEAVED * t->lag_1 && t->lag_1 > 0.01 * t->green)
 		found |= SUSPECT_INTERLEAVED;
-	const float median =
-		t->n_sampled ? gsl_stats_float_select(t->sampled, 1, t->n_sampled, t->n_sampled / 2) : INFINITY;
-	for (int c = 0; c < MERL_CHANNELS; c++) {
-		if (t->max[c] > median && t->max_rows[c] > s->n_clipped_rows)
+	/* A table that is the same nearly everywhere is not clipped, but diffuse. */
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		if (t->max_rows[c] > s->n_clipped_rows && t->max_rows[c] < CONSTANT * t->n_rows)
 			s->n_clipped_rows = t->max_rows[c];
-	}
 	if (s->n_clipped_rows >= CLIPPED_ROWS)
 		found |= SUSPECT_CLIPPED;
 	return found;

@@ -13,7 +13,7 @@ static void write_number(FILE *file, double x)
 	fputs(isnan(x) ? "null" : isinf(x) ? (x > 0 ? "\"inf\"" : "\"-inf\"") : text, file);
 }
 
-/* What is no printable UTF-8 becomes U+FFFD. */
+/* What is no UTF-8 becomes U+FFFD. */
 static void write_string(FILE *file, const char *text)
 {
 	if (!text) {
@@ -22,11 +22,14 @@ static void write_string(FILE *file, const char *text)
 	}
 	fputc('"', file);
 	while (*text) {
-		const size_t length = text_printable(text);
+		uint32_t code;
+		const size_t length = text_character(text, &code);
 		if (*text == '"' || *text == '\\')
 			fputc('\\', file);
-		if (length)
+		if (text_printable(text))
 			fwrite(text, 1, length, file);
+		else if (length)
+			fprintf(file, "\\u%04x", (unsigned)code);
 		else
 			fputs("\xef\xbf\xbd", file);
 		text += length ? length : 1;

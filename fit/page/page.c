@@ -89,7 +89,16 @@ static void put_missing(FILE *page, const char *why)
 
 /* The beginning */
 
-static void put_top(FILE *page, const struct materials *materials)
+/* name: NULL where there are several. */
+static void put_title(FILE *page, const char *name, size_t n)
+{
+	if (name)
+		html_text(page, name);
+	else
+		fprintf(page, "%zu materials", n);
+}
+
+static void put_top(FILE *page, const char *name, size_t n)
 {
 	/* The page contains all it needs and fetches nothing. */
 	fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -99,15 +108,9 @@ static void put_top(FILE *page, const struct materials *materials)
 	      "<meta name=\"color-scheme\" content=\"light dark\">\n"
 	      "<link rel=\"icon\" href=\"data:,\">\n<title>stdfit: fits of ",
 	      page);
-	if (materials->n == 1)
-		html_text(page, materials->material[0].name);
-	else
-		fprintf(page, "%zu materials", materials->n);
+	put_title(page, name, n);
 	fprintf(page, "</title>\n<style>\n%s</style>\n</head>\n<body>\n<main>\n<h1>Fits of ", page_style);
-	if (materials->n == 1)
-		html_text(page, materials->material[0].name);
-	else
-		fprintf(page, "%zu materials", materials->n);
+	put_title(page, name, n);
 	fputs("</h1>\n<p>Cook-Torrance models, a diffuse term and one microfacet lobe, fitted to measured BRDFs. The "
 	      "error "
 	      "E is the sum of |measured \xe2\x88\x92 model| over that of measured, 0 for a perfect model and 1 for a "
@@ -162,11 +165,14 @@ static char *const *best_row(const struct error_grid *grid, const struct error_l
 	return NULL;
 }
 
-static void put_material_row(FILE *page, const struct error_grid *grid, const struct error_line *line)
+static void put_material_row(FILE *page, const struct error_grid *grid, const struct error_line *line, bool divided)
 {
 	static const enum result_column shape[] = {RESULT_SIGMA, RESULT_GAMMA, RESULT_IOR};
 	char *const *best = best_row(grid, line);
-	fprintf(page, "<tr><th scope=\"row\"><a href=\"#m-%s\">", line->material->file_name);
+	fprintf(page,
+		divided ? "<tr><th scope=\"row\"><a href=\"" PAGE_DIRECTORY "/%s.html\">"
+			: "<tr><th scope=\"row\"><a href=\"#m-%s\">",
+		line->material->file_name);
 	html_text(page, line->material->name);
 	fputs("</a></th>", page);
 	put_text_cell(page, best ? grid->ndf[line->best] : "", false);
@@ -178,7 +184,7 @@ static void put_material_row(FILE *page, const struct error_grid *grid, const st
 	fputs("</tr>\n", page);
 }
 
-static void put_materials(FILE *page, const struct error_grid *grid)
+static void put_materials(FILE *page, const struct error_grid *grid, bool divided)
 {
 	static const char *const shape[] = {"sigma", "gamma", "n"};
 	fputs("<h2 id=\"materials\">Materials</h2>\n<p class=\"soft\">Lowest errors are bold; sigma, gamma and n are "
@@ -198,24 +204,33 @@ static void put_materials(FILE *page, const struct error_grid *grid)
 	put_head(page, "status", "", false);
 	fputs("</tr></thead><tbody>\n", page);
 	for (size_t m = 0; m < grid->n; m++)
-		put_material_row(page, grid, &grid->line[m]);
+		put_material_row(page, grid, &grid->line[m], divided);
 	end_table(page);
 }
 
 enum status page_begin(struct page *page, FILE *file, const struct materials *materials,
 		       const struct page_picture *errors, const char *missing, struct error *error)
 {
-	*page = (struct page){.file = file, .materials = materials};
+	*page = (struct page){.file = file, .materials = materials, .divided = materials->n > PAGE_MATERIALS_MAX};
 	if (error_grid_make(materials, &page->grid) != STATUS_OK)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	put_top(file, materials);
+	put_top(file, materials->n == 1 ? materials->material[0].name : NULL, materials->n);
 	if (put_summary(file, &page->grid) != STATUS_OK)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	const enum status status = put_picture(file, NULL, errors, error);
 	put_missing(file, missing);
-	put_materials(file, &page->grid);
-	fputs("<h2 id=\"details\">Each material</h2>\n", file);
+	put_materials(file, &page->grid, page->divided);
+	if (!page->divided)
+		fputs("<h2 id=\"details\">Each material</h2>\n", file);
 	return status;
+}
+
+void page_of_material(const struct page *page, size_t m, FILE *file, struct page *own)
+{
+	*own = *page;
+	own->file = file;
+	put_top(file, page->materials->material[m].name, 1);
+	fprintf(file, "<p><a href=\"../index.html\">All %zu materials</a></p>\n", page->materials->n);
 }
 
 /* One material */
@@ -233,10 +248,10 @@ enum { PARAMETERS = sizeof parameters / sizeof *parameters };
 /* What is shown elsewhere, or is the same for all rows of a material. */
 static bool is_certainty(enum result_column column)
 {
-	static const enum result_column elsewhere[] = {RESULT_MATERIAL,  RESULT_NDF,    RESULT_PARAMS, RESULT_GAF,
-						       RESULT_FRESNEL,   RESULT_LAMBDA, RESULT_WEIGHT, RESULT_BINS,
-						       RESULT_MAX_THETA, RESULT_PATH,   RESULT_INPUT,  RESULT_OPTIONS,
-						       RESULT_VERSION,   RESULT_SECONDS};
+	static const enum result_column elsewhere[] = {RESULT_MATERIAL,  RESULT_NDF,     RESULT_PARAMS,  RESULT_GAF,
+						       RESULT_FRESNEL,   RESULT_LAMBDA,  RESULT_WEIGHT,  RESULT_BINS,
+						       RESULT_MAX_THETA, RESULT_PATH,    RESULT_INPUT,   RESULT_OPTIONS,
+						       RESULT_VERSION,   RESULT_SECONDS, RESULT_SUSPECTS};
 	for (int p = 0; p < PARAMETERS; p++)
 		if (parameters[p].column == column)
 			return false;
@@ -312,10 +327,14 @@ static void put_certainty(FILE *page, const struct material *material)
 
 static void put_origin(FILE *page, const struct material *material)
 {
-	static const enum result_column column[] = {RESULT_OPTIONS, RESULT_VERSION, RESULT_PATH, RESULT_INPUT};
-	static const char *const name[] = {"options", "fitted by stdfit", "file", "size and hash"};
+	static const enum result_column column[] = {RESULT_OPTIONS, RESULT_VERSION, RESULT_PATH, RESULT_INPUT,
+						    RESULT_SUSPECTS};
+	static const char *const name[] = {"options", "fitted by stdfit", "file", "size and hash",
+					   "what looks wrong in it"};
 	fputs("<dl>", page);
 	for (size_t c = 0; c < sizeof column / sizeof *column; c++) {
+		if (column[c] == RESULT_SUSPECTS && !*material->row[0][RESULT_SUSPECTS])
+			continue;
 		fprintf(page, "<dt>%s</dt><dd>", name[c]);
 		html_text(page, *material->row[0][column[c]] ? material->row[0][column[c]] : "not known");
 		fputs("</dd>", page);
@@ -344,7 +363,8 @@ enum status page_material(const struct page *page, size_t m, const struct page_p
 	const struct material *material = &page->materials->material[m];
 	FILE *file = page->file;
 	enum status status = STATUS_OK;
-	fprintf(file, "<details class=\"material\" id=\"m-%s\"><summary><h3>", material->file_name);
+	fprintf(file, "<details class=\"material\" id=\"m-%s\"%s><summary><h3>", material->file_name,
+		page->divided ? " open" : "");
 	html_text(file, material->name);
 	fputs("</h3>", file);
 	put_best(file, &page->grid, &page->grid.line[m]);

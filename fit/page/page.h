@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* page - the HTML of a report: one file that needs no other and no network. page_begin(), page_material() for each
- * material in order, page_end(). Failures to write show in ferror(). */
+/* page - the HTML of a report: files that need no network and nothing but each other. page_begin(), page_material() for each
+ * material in order, page_end(). Up to PAGE_MATERIALS_MAX materials stand in one file; of more, each has a file of its own,
+ * PAGE_DIRECTORY/NAME.html beside the first file, begun with page_of_material() and ended with page_end() like that.
+ * Failures to write show in ferror(). */
 #ifndef PAGE_H
 #define PAGE_H
 
@@ -14,11 +16,15 @@ struct page_picture {
 	const char *alt, *caption; /* `alt` follows the name of the material, if there is one */
 };
 
+enum { PAGE_MATERIALS_MAX = 150 };
+#define PAGE_DIRECTORY "materials"
+
 /* struct page - a page being written. */
 struct page {
 	FILE *file; /* borrowed */
 	const struct materials *materials;
 	struct error_grid grid;
+	bool divided; /* each material has a file of its own */
 };
 
 /* page_begin - head, summary, and the sortable table of all materials. errors: the picture of the sorted errors;
@@ -26,6 +32,10 @@ struct page {
  * page_free() in any case. */
 MUST_CHECK enum status page_begin(struct page *page, FILE *file, const struct materials *materials,
 				  const struct page_picture *errors, const char *missing, struct error *error);
+
+/* page_of_material - begins the file of material m, where the page is divided. *own borrows from *page: it is not to be
+ * freed. */
+void page_of_material(const struct page *page, size_t m, FILE *file, struct page *own);
 
 /* page_material - of material m: its pictures, parameters, certainty, options. missing: why pictures are missing; NULL if
  * none is. */

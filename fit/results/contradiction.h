@@ -16,9 +16,9 @@ struct contradiction {
 	enum result_column column;
 };
 
-/* contradiction_find - the first two rows of one fit that differ in another column than seconds. With --within a file has
- * one row, whatever its NDF. doubtful, repeated: NULL, or per row: whether it is of a fit whose rows differ; whether it
- * agrees with an earlier one. STATUS_NO_MEMORY. */
+/* contradiction_find - the first two rows of one fit that differ in another column than seconds. With --within a
+ * file has one row, whatever its NDF. doubtful, repeated: NULL, or per row: whether it is of a fit whose rows
+ * differ; whether it agrees with an earlier one. STATUS_NO_MEMORY. */
 MUST_CHECK enum status contradiction_find(const struct csv_table *rows, enum same_fit same, struct contradiction *found,
 					  bool *doubtful, bool *repeated);
 

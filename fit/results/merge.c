@@ -37,7 +37,7 @@ static enum status read_tables(struct merge *m, struct error *error)
 	for (int t = 0; t < m->n_paths; t++) {
 		enum status status = store_check_columns(m->path[t], error);
 		if (status == STATUS_OK)
-			status = csv_table_read(&m->table[t], m->path[t], RESULT_COLUMNS, NULL, error);
+			status = csv_table_read(&m->table[t], m->path[t], RESULT_LATER, NULL, error);
 		if (status != STATUS_OK)
 			return status;
 		n += m->table[t].n_rows;

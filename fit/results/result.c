@@ -51,6 +51,10 @@ const struct csv_column result_columns[RESULT_COLUMNS] = {
 	[RESULT_ALBEDO_G] = {"albedo_g", true},
 	[RESULT_ALBEDO_B] = {"albedo_b", true},
 	[RESULT_ENERGY] = {"energy", false},
+	[RESULT_SIGMA_X] = {"sigma_x", true},
+	[RESULT_SIGMA_Y] = {"sigma_y", true},
+	[RESULT_ANGLE] = {"angle", true},
+	[RESULT_ERROR_ISOTROPIC] = {"error_isotropic", true},
 	[RESULT_SUSPECTS] = {"suspects", false},
 };
 
@@ -191,7 +195,8 @@ static void set_ndf(struct row *row, const struct ndf *ndf, char params[PARAMS_S
 	for (int i = 0; ndf_param_at(ndf->class, i); i++) {
 		const struct ndf_param *param = ndf_param_at(ndf->class, i);
 		if (param->role == NDF_ROLE_SIGMA)
-			set_number(row, RESULT_SIGMA, ndf->param[i]);
+			set_number(row, RESULT_SIGMA,
+				   ndf->sigma_x == ndf->sigma_y ? ndf->param[i] : sqrt(ndf->sigma_x * ndf->sigma_y));
 		else if (param->role == NDF_ROLE_GAMMA)
 			set_number(row, RESULT_GAMMA, ndf->param[i]);
 		else
@@ -199,6 +204,18 @@ static void set_ndf(struct row *row, const struct ndf *ndf, char params[PARAMS_S
 	}
 	if (!ndf_has_gamma(ndf->class) && !ndf_is_tabulated(ndf->class))
 		set_number(row, RESULT_GAMMA, ndf->gamma);
+}
+
+/* Of an anisotropic fit; its sigma is the geometric mean. Where both are one roughness, there is no angle. */
+static void set_axes(struct row *row, const struct fit_result *result)
+{
+	const struct ndf *ndf = &result->model.ndf;
+	set_number(row, RESULT_SIGMA_X, ndf->sigma_x);
+	set_number(row, RESULT_SIGMA_Y, ndf->sigma_y);
+	if (ndf->sigma_x != ndf->sigma_y)
+		set_number(row, RESULT_ANGLE, ndf->angle);
+	if (!isnan(result->error_isotropic))
+		set_number(row, RESULT_ERROR_ISOTROPIC, result->error_isotropic);
 }
 
 static void set_model(struct row *row, const struct fit_options *options, const struct fit_result *result,
@@ -211,6 +228,8 @@ static void set_model(struct row *row, const struct fit_options *options, const 
 		return;
 	for (int c = 0; c < 3; c++)
 		set_number(row, RESULT_KS_R + (enum result_column)c, model->ks[c]);
+	if (options->anisotropic)
+		set_axes(row, result);
 	if (ndf_is_tabulated(model->ndf.class))
 		set_nodes(options, &model->ndf, params);
 	else
@@ -263,8 +282,8 @@ enum { NAMES_SIZE = 64, STATUS_SIZE = NAMES_SIZE + 16 };
 /* The names of enum fit_bound's bits. */
 static const char *names_text(char text[NAMES_SIZE], unsigned bits)
 {
-	static const char *const name[] = {"sigma", "gamma", "ior",  "kd_r", "kd_g",
-					   "kd_b",  "ks_r",  "ks_g", "ks_b", "k"};
+	static const char *const name[] = {"sigma", "gamma", "ior",  "kd_r", "kd_g", "kd_b",
+					   "ks_r",  "ks_g",  "ks_b", "k",    "angle"};
 	char *at = text;
 	*at = '\0';
 	for (size_t b = 0; b < sizeof name / sizeof *name; b++) {
@@ -418,6 +437,20 @@ void result_model_free(struct cook_torrance *model, struct pwl *pwl)
 	free(pwl);
 }
 
+/* Makes the distribution of a row anisotropic. Those that can be have no parameters but sigma and gamma, or an x of 2. */
+static enum status result_axes(char *const *row, struct ndf *ndf, enum result_column *wrong)
+{
+	const double sigma_x = result_number(row, RESULT_SIGMA_X), sigma_y = result_number(row, RESULT_SIGMA_Y);
+	*wrong = RESULT_SIGMA_X;
+	if (!(sigma_x > 0))
+		return STATUS_DOMAIN;
+	*wrong = RESULT_SIGMA_Y;
+	if (!(sigma_y > 0) || ndf_init(ndf, ndf->class, sigma_x, sigma_y, ndf->gamma) != STATUS_OK)
+		return STATUS_DOMAIN;
+	*wrong = RESULT_ANGLE;
+	return sigma_x == sigma_y ? STATUS_OK : ndf_turn(ndf, result_number(row, RESULT_ANGLE));
+}
+
 /* The distribution of a row, from its columns and params; names the column to blame. */
 static enum status result_ndf(char *const *row, const struct ndf_class *class, struct ndf *ndf,
 			      enum result_column *wrong)
@@ -447,6 +480,8 @@ static enum status result_ndf(char *const *row, const struct ndf_class *class, s
 		}
 	}
 	if (ndf_init_params(ndf, class, value) != STATUS_OK)
+		return STATUS_DOMAIN;
+	if (*row[RESULT_SIGMA_X] && result_axes(row, ndf, wrong) != STATUS_OK)
 		return STATUS_DOMAIN;
 	*wrong = RESULT_LAMBDA;
 	if (lambda_form_find(row[RESULT_LAMBDA], &form) != STATUS_OK)

@@ -49,7 +49,12 @@ enum result_column {
 	RESULT_ALBEDO_B,
 	RESULT_ENERGY,
 	RESULT_SUSPECTS,
-	RESULT_COLUMNS
+	RESULT_SIGMA_X,
+	RESULT_SIGMA_Y,
+	RESULT_ANGLE,
+	RESULT_ERROR_ISOTROPIC,
+	RESULT_COLUMNS,
+	RESULT_LATER = RESULT_SIGMA_X /* from here on columns that earlier tables lack: what is not there is empty */
 };
 
 extern const struct csv_column result_columns[RESULT_COLUMNS];

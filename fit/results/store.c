@@ -120,7 +120,6 @@ enum status store_check_columns(const char *path, struct error *error)
 static enum status sort_old(struct store *store)
 {
 	struct contradiction found, again;
-	char name[TEXT_QUOTE_SIZE];
 	store->stale = calloc(store->old.n_rows + 1, sizeof(*store->stale));
 	store->doubtful = calloc(store->old.n_rows + 1, sizeof(*store->doubtful));
 	if (!store->stale || !store->doubtful)
@@ -132,6 +131,7 @@ static enum status sort_old(struct store *store)
 	if (status == STATUS_OK)
 		status = contradiction_find(&store->old, SAME_RUN, &again, store->doubtful, store->stale);
 	if (status == STATUS_OK && found.first) {
+		char name[TEXT_QUOTE_SIZE];
 		text_quote(store->path, name, sizeof name);
 		error_set(&store->doubt, STATUS_FORMAT,
 			  "'%s' rows %zu and %zu, of the same fit, differ in %s: such fits are made again", name,
@@ -152,7 +152,7 @@ static enum status resume_old(struct store *store, struct error *error)
 		return foreign_columns(store->path, "resume", error);
 	store->headed = beginning == HEADER_WHOLE;
 	if (store->headed) {
-		const enum status status = csv_table_read(&store->old, store->path, RESULT_COLUMNS, &complete, error);
+		const enum status status = csv_table_read(&store->old, store->path, RESULT_LATER, &complete, error);
 		if (status != STATUS_OK)
 			return status;
 	}
@@ -265,10 +265,10 @@ static enum status replace_old(struct store *store, char *const *row, struct err
 	enum status status = append_line(store, fd, NULL, error);
 	if (status == STATUS_OK && row)
 		status = append_line(store, fd, row, error);
+	if (status == STATUS_OK)
+		status = output_back_up(&store->output, error);
 	if (status == STATUS_OK) {
-		int errnum = output_back_up(&store->output);
-		if (!errnum)
-			errnum = output_replace(&store->output, name, fd);
+		const int errnum = output_replace(&store->output, name, fd);
 		if (errnum)
 			status = output_failed(&store->output, errnum, error);
 	}

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* store - a result table on disk while it grows: each row is appended with one write, the whole is put in order at the
- * end, and what an earlier run left is used again. A kill at any moment leaves complete rows and perhaps a part of one
- * more. The table is locked from store_open() to the end of store_rewrite() or store_close(): two runs never write to one. What
- * a name means that is a link, a pipe or a descriptor, data_readers/output.h says. */
+/* store - a result table on disk while it grows: each row is appended with one write, the whole is put in order at
+ * the end, and what an earlier run left is used again. A kill at any moment leaves complete rows and perhaps a part
+ * of one more. The table is locked from store_open() to the end of store_rewrite() or store_close(): two runs never
+ * write to one. What a name means that is a link, a pipe or a descriptor, data_readers/output.h says. */
 #ifndef STORE_H
 #define STORE_H
 
@@ -21,14 +21,15 @@ struct store {
 };
 
 /* store_open - prepares to write to `path`, which changes only when the first row comes.
- * resume: reads the rows of an existing table; the rest of an interrupted write behind them is removed. Rows of one fit that
- * contradict each other count for none, and store->doubt names the first two; of equal ones the first counts.
+ * resume: reads the rows of an existing table; the rest of an interrupted write behind them is removed. Rows of one fit
+ * that contradict each other count for none, and store->doubt names the first two; of equal ones the first counts.
  * Errors: STATUS_IO (also: another process writes there; resume, and it is no file but written in order),
  * STATUS_NO_MEMORY, STATUS_FORMAT (resume, and the file is no result table of this version). */
 MUST_CHECK enum status store_open(struct store *store, const char *path, bool resume, struct error *error);
 
-/* store_has - whether the earlier run left a row, and none that contradicts it, of this file, bytes (any, where they are not known), options and
- * version, for the NDF of that name (NULL: for some NDF) that did not fail. Safe from several threads. */
+/* store_has - whether the earlier run left a row, and none that contradicts it, of this file, bytes (any, where they
+ * are not known), options and version, for the NDF of that name (NULL: for some NDF) that did not fail. Safe from
+ * several threads. */
 bool store_has(const struct store *store, const struct result_source *source, const char *ndf);
 /* store_drop_stale - the old rows of source->path for which store_has() does not hold will not be kept. */
 void store_drop_stale(struct store *store, const struct result_source *source);
@@ -51,8 +52,8 @@ MUST_CHECK enum status store_probe(const char *path, struct error *error);
  * or less. */
 MUST_CHECK enum status store_check_columns(const char *path, struct error *error);
 
-/* store_write - a whole table of any kind, by csv_write() or report_json(), in the place of an older file, which is kept
- * as FILE~ beside it. On failure the older file stays. */
+/* store_write - a whole table of any kind, by csv_write() or report_json(), in the place of an older file, which is
+ * kept as FILE~ beside it. On failure the older file stays. */
 MUST_CHECK enum status store_write(const char *path, const struct csv_table *table,
 				   void (*write)(FILE *file, const struct csv_table *table), struct error *error);
 

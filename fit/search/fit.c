@@ -2,6 +2,7 @@
 #include "fit/search/fit.h"
 #include "fit/error/metrics.h"
 #include "fit/search/algorithms.h"
+#include "fit/search/anisotropic.h"
 #include "fit/search/free_form.h"
 #include "fit/search/options_check.h"
 #include "fit/search/undetermined.h"
@@ -35,6 +36,9 @@ void fit_context_free(struct fit_context *context)
 	free(context);
 }
 
+static const char isotropic_table[] =
+	"a table over theta_h, theta_d and phi_d is isotropic: an anisotropic model needs scattered entries";
+
 /* Whether the options keep the rules, and the context is one for them and this measurement. */
 static enum status check_arguments(const struct fit_context *context, const struct measurement *measurement,
 				   const struct fit_options *options, struct error *error)
@@ -47,6 +51,11 @@ static enum status check_arguments(const struct fit_context *context, const stru
 	if (measurement->n_phi_d != context->geometry.n_phi_d)
 		return error_set(error, STATUS_DOMAIN, "the context is for measurements of %d phi_d: this one has %d",
 				 context->geometry.n_phi_d, measurement->n_phi_d);
+	if (options->anisotropic && measurement->scattered && measurement->scattered->symmetry == SYMMETRY_ISOTROPIC)
+		return error_set(error, STATUS_UNSUPPORTED,
+				 "an anisotropic model needs wi at several azimuths: this measurement is isotropic");
+	if (options->anisotropic && !measurement->scattered)
+		return error_set(error, STATUS_DOMAIN, "%s", isotropic_table);
 	if (!criterion_equal(made_for, asked))
 		return error_set(error, STATUS_DOMAIN,
 				 "the context is for gaf %s, weight %s, bins %s, max_theta %g, zero_is_missing %d: the "
@@ -64,6 +73,7 @@ struct run {
 	const struct measurement *measurement;
 	const struct fit_options *options;
 	struct multiresolution multiresolution;
+	struct nested *isotropic;   /* of anisotropic options: the isotropic fits */
 	struct scan_minima *minima; /* of the last search of each class, by its index in the table of distributions */
 };
 
@@ -87,7 +97,12 @@ static unsigned bounds_of(const struct fit_result *r, const struct fit_options *
 	unsigned bits = 0;
 
 	if (o->specular) {
-		if (isnan(o->sigma) && on_bound(m->ndf.sigma_x, FIT_SIGMA_MIN, FIT_SIGMA_MAX))
+		struct space space;
+
+		space_init(&space, o, m->ndf.class);
+		const double sigma = sqrt(m->ndf.sigma_x * m->ndf.sigma_y) / space_sigma_scale(&space, m->ndf.gamma);
+
+		if (isnan(o->sigma) && on_bound(sigma, FIT_SIGMA_MIN, FIT_SIGMA_MAX))
 			bits |= BOUND_SIGMA;
 		const struct ndf_param *gamma = ndf_has_gamma(m->ndf.class) ? ndf_param_at(m->ndf.class, 1) : NULL;
 
@@ -129,6 +144,7 @@ static enum status result_with_ndf(const struct run *run, const struct found *fo
 	if (status != STATUS_OK)
 		return status;
 	r->error = r->metrics.error[o->criterion.weight];
+	r->error_isotropic = NAN;
 	r->lower_bound = found->linear.lower_bound;
 	r->end = found->limited ? FIT_LIMIT : FIT_CONVERGED;
 	r->starts = found->starts;
@@ -146,6 +162,12 @@ static enum status result_of(const struct run *run, const struct ndf_class *clas
 
 	*r = (struct fit_result){.pwl = NULL};
 	status = shape_ndf(&found->shape, class, run->options->lambda, &r->model.ndf);
+	if (status == STATUS_OK && run->options->anisotropic && !isnan(run->options->sigma_y)) {
+		/* As they were given, to the last bit. */
+		r->model.ndf.sigma_x = r->model.ndf.param[0] = run->options->sigma;
+		r->model.ndf.sigma_y = run->options->sigma_y;
+		status = ndf_turn(&r->model.ndf, found->shape.angle);
+	}
 	return status == STATUS_OK ? result_with_ndf(run, found, r) : status;
 }
 
@@ -176,9 +198,9 @@ struct nested {
 	struct fit_result result[NESTED], of_class[FIT_NDFS_MAX];
 };
 
-/* What a run remembers of its searches: 400 kB, too much for the stack of a thread. */
+/* What a run remembers of its searches: 600 kB, too much for the stack of a thread. */
 struct memory {
-	struct nested nested;
+	struct nested nested, anisotropic;
 	struct scan_minima minima[FIT_NDFS_MAX];
 };
 
@@ -242,14 +264,16 @@ static enum status take_nested(const struct run *run, struct fit_result *r, cons
 			       const struct fit_result *from, double gamma)
 {
 	struct fit_result selected = *from;
-	const double sigma = from->model.ndf.sigma_x;
+	const struct ndf *ndf = &from->model.ndf;
 	enum status status;
 
 	if (from->error >= r->error)
 		return STATUS_OK;
 	keep_effort(&selected, r);
 	*r = selected;
-	status = ndf_init(&r->model.ndf, class, sigma, sigma, gamma);
+	status = ndf_init(&r->model.ndf, class, ndf->sigma_x, ndf->sigma_y, gamma);
+	if (status == STATUS_OK)
+		status = ndf_turn(&r->model.ndf, ndf->angle);
 	r->at_bound = bounds_of(r, run->options);
 	return status;
 }
@@ -449,6 +473,59 @@ void fit_result_free(struct fit_result *result)
 	result->pwl = NULL;
 }
 
+/* The isotropic fit, then axes: from the isotropic optimum as it is, from those of the nested distributions that are anisotropic,
+ * and from a scan. */
+static enum status fit_anisotropic(const struct run *run, const struct ndf_class *class, struct nested *nested,
+				   struct fit_result *r)
+{
+	const struct nesting *nesting = nesting_of(run, class);
+	struct fit_options isotropic_options = *run->options, options = *run->options;
+	struct fit_result isotropic, inner[NESTED];
+	struct run own = *run;
+	struct shape start[SEARCH_GIVEN];
+	struct found found;
+	long evaluations = 0;
+	int count = 1;
+
+	isotropic_options.anisotropic = false;
+	isotropic_options.angle = NAN;
+	own.options = &isotropic_options;
+	enum status status = fit_class(&own, class, run->isotropic, &isotropic);
+
+	for (int n = 0; n < NESTED && status == STATUS_OK; n++) {
+		if (!nesting || isnan(nesting->gamma[n]))
+			continue;
+		status = fit_class(run, ndf_find(nested_name[n]), nested, &inner[n]);
+		start[count] = shape_of(&inner[n].model);
+		start[count++].gamma = nesting->gamma[n];
+	}
+	if (status != STATUS_OK)
+		return status;
+	const double begin = search_clock();
+
+	start[0] = shape_of(&isotropic.model);
+	if (has_sparse_lambda(run, class))
+		options.gamma = start[0].gamma; /* the other values have been fitted */
+	count += anisotropic_starts(&run->multiresolution, &options, class, &start[0], start + count,
+				    SEARCH_GIVEN - count, &evaluations, &status);
+	if (status == STATUS_OK)
+		status = search_from(&run->multiresolution, &options, class, start, count, &start[0], INFINITY, &found);
+	if (status == STATUS_OK)
+		status = result_of(run, class, &found, r);
+	if (status != STATUS_OK)
+		return status;
+	r->evaluations += isotropic.evaluations + evaluations;
+	r->passes += isotropic.passes;
+	r->seconds = isotropic.seconds + search_clock() - begin;
+	r->undetermined = isotropic.undetermined;
+	status = take_nested(run, r, class, &isotropic, isotropic.model.ndf.gamma);
+	for (int n = 0; n < NESTED && status == STATUS_OK; n++)
+		if (nesting && !isnan(nesting->gamma[n]))
+			status = take_nested(run, r, class, &inner[n], nesting->gamma[n]);
+	r->error_isotropic = isotropic.error;
+	return status;
+}
+
 static enum status fit_anew(const struct run *run, const struct ndf_class *class, struct nested *nested,
 			    struct fit_result *r)
 {
@@ -456,6 +533,8 @@ static enum status fit_anew(const struct run *run, const struct ndf_class *class
 
 	if (ndf_is_tabulated(class))
 		return fit_free_form(run, nested, r);
+	if (run->options->anisotropic && isnan(run->options->sigma_y))
+		return fit_anisotropic(run, class, nested, r);
 	if (nesting)
 		return fit_with_nested(run, class, nesting, nested, r);
 	if (has_sparse_lambda(run, class))
@@ -504,7 +583,7 @@ static enum status find_undetermined(const struct run *run, const struct ndf_cla
 {
 	const double begin = search_clock();
 	const struct cook_torrance *m = &r->model;
-	const unsigned settled = gamma_settled(run, class, nested, r);
+	const unsigned settled = run->options->anisotropic ? 0 : gamma_settled(run, class, nested, r);
 	const struct shape best = shape_of(m);
 	struct fit_options options = *run->options;
 	enum status status = STATUS_OK;
@@ -516,6 +595,8 @@ static enum status find_undetermined(const struct run *run, const struct ndf_cla
 		status = undetermined_find(&run->multiresolution, &options, class, &run->minima[index_of(class)], &best,
 					   r->error, settled, &found, &r->evaluations);
 	r->undetermined |= found;
+	if (r->error_isotropic <= undetermined_limit(r->error))
+		r->undetermined |= BOUND_ANGLE;
 	r->seconds += search_clock() - begin;
 	return status;
 }
@@ -546,10 +627,13 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 		status = STATUS_NO_MEMORY;
 	else
 		run.minima = memory->minima;
+	struct nested *nested = !memory ? NULL : options->anisotropic ? &memory->anisotropic : &memory->nested;
+
+	run.isotropic = memory ? &memory->nested : NULL;
 	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++) {
-		status = fit_class(&run, options->ndf[n], &memory->nested, &results[n]);
+		status = fit_class(&run, options->ndf[n], nested, &results[n]);
 		if (status == STATUS_OK)
-			status = find_undetermined(&run, options->ndf[n], &memory->nested, &results[n]);
+			status = find_undetermined(&run, options->ndf[n], nested, &results[n]);
 	}
 	for (int n = 0; n < options->n_ndf && status != STATUS_OK; n++)
 		fit_result_free(&results[n]);
@@ -595,6 +679,8 @@ enum status fit_eval(const struct measurement *measurement, const struct cook_to
 	enum status status;
 
 	own.criterion.gaf = model->gaf;
+	if (model->ndf.sigma_x != model->ndf.sigma_y && !measurement->scattered)
+		return error_set(error, STATUS_DOMAIN, "%s", isotropic_table);
 	status = fit_criterion_check(&own, error);
 	if (status != STATUS_OK)
 		return status;

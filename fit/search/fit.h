@@ -22,6 +22,7 @@ enum fit_bound {
 	BOUND_KS_G = 1 << 7,
 	BOUND_KS_B = 1 << 8,
 	BOUND_K = 1 << 9,
+	BOUND_ANGLE = 1 << 10,
 };
 
 /* A parameter is undetermined when, at every value of its domain, with the other parameters refitted, E is at most
@@ -34,6 +35,7 @@ struct fit_result {
 	struct pwl *pwl;            /* pl: the table of model.ndf, owned by the result; else NULL */
 	bool diffuse, specular;     /* what the model has, as in the options */
 	double error;               /* E under the fit's own weight */
+	double error_isotropic;     /* of an anisotropic fit: E of the isotropic one, which is never below; else NaN */
 	double lower_bound;         /* certified: no kd, ks of this shape goes below it */
 	struct fit_metrics metrics;
 	enum fit_end end;
@@ -62,12 +64,15 @@ void fit_context_free(struct fit_context *context);
 void fit_result_free(struct fit_result *result);
 
 /* fit_run - fits every NDF of the options; results[0 .. options->n_ndf - 1], in the options' order.
+ * Anisotropic options: each NDF is fitted isotropic first, then with axes from there; *results has the second. A sigma and sigma_y
+ * that are fixed leave nothing isotropic to fit. The angle is undetermined where the isotropic fit is as good.
  * Richer models never end above the nested ones: GGX's and Beckmann's optima are candidates of STD's. Other algorithms
  * than the default fit each NDF by itself.
  * pl, the piecewise-linear NDF, is fitted to the table itself (free_form.h), from the optima of STD, GGX and Beckmann.
  * On success each result is to be freed with fit_result_free(). 256 kB of stack are
  * enough for the caller; OpenMP gives its own threads theirs (OMP_STACKSIZE).
- * Errors: STATUS_DOMAIN (fit_options_check(), or the context was made for another n_phi_d or criterion), STATUS_NO_DATA (no valid entry, all
+ * Errors: STATUS_DOMAIN (fit_options_check(), or the context was made for another n_phi_d or criterion; anisotropic
+ * options and a table, which tells nothing of the azimuth of h), STATUS_NO_DATA (no valid entry, all
  * zero), STATUS_NO_MEMORY, STATUS_INTERRUPTED. */
 MUST_CHECK enum status fit_run(const struct fit_context *context, const struct measurement *measurement,
 			       const struct fit_options *options, struct fit_result *results, struct error *error);
@@ -78,7 +83,7 @@ MUST_CHECK enum status fit_run(const struct fit_context *context, const struct m
 MUST_CHECK enum status fit_estimate(const struct fit_context *context, const struct measurement *measurement,
 				    const struct fit_options *options, double *estimate, struct error *error);
 
-/* fit_eval - the metrics of a given model against a table, no fit. Of the options only criterion (but its gaf, which is the
+/* fit_eval - the metrics of a given model against a measurement, no fit; an anisotropic one wants scattered entries. Of the options only criterion (but its gaf, which is the
  * model's) and threads are read, and checked. Errors as of fit_run(). */
 MUST_CHECK enum status fit_eval(const struct measurement *measurement, const struct cook_torrance *model,
 				const struct fit_options *options, struct fit_metrics *metrics, struct error *error);

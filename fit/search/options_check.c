@@ -54,6 +54,11 @@ static enum status check_ranges(const struct fit_options *o, struct error *error
 	if (!free_or_within(o->sigma, FIT_SIGMA_MIN, FIT_SIGMA_MAX))
 		return error_set(error, STATUS_DOMAIN, "expected sigma in [%g, %g], found %g", FIT_SIGMA_MIN,
 				 FIT_SIGMA_MAX, o->sigma);
+	if (!free_or_within(o->sigma_y, FIT_SIGMA_MIN, FIT_SIGMA_MAX))
+		return error_set(error, STATUS_DOMAIN, "expected sigma_y in [%g, %g], found %g", FIT_SIGMA_MIN,
+				 FIT_SIGMA_MAX, o->sigma_y);
+	if (isinf(o->angle))
+		return error_set(error, STATUS_DOMAIN, "expected a finite angle, found %g", o->angle);
 	if (!free_or_within(o->ior, FIT_IOR_MIN, FIT_IOR_MAX))
 		return error_set(error, STATUS_DOMAIN, "expected ior in [%g, %g], found %g", FIT_IOR_MIN, FIT_IOR_MAX,
 				 o->ior);
@@ -77,6 +82,38 @@ static bool takes_gamma(const struct fit_options *o, const struct ndf_class *cla
 	return isnan(o->gamma) || !ndf_has_gamma(class) || shape_ndf(&shape, class, o->lambda, &ndf) == STATUS_OK;
 }
 
+/* Why these options make no anisotropic fit; NULL: they do, or ask for none. */
+static const char *anisotropic_fault(const struct fit_options *o)
+{
+	if (!o->anisotropic)
+		return isnan(o->sigma_y) && isnan(o->angle) ? NULL
+							    : "sigma_y and angle are those of an anisotropic fit";
+	if (!o->specular)
+		return "an anisotropic fit needs a specular term";
+	if (o->algorithm)
+		return "an anisotropic fit needs the default algorithm";
+	if (isnan(o->sigma) != isnan(o->sigma_y))
+		return "an anisotropic fit fixes both roughnesses or none";
+	if (o->sigma > FIT_RATIO_MAX * o->sigma_y || o->sigma_y > FIT_RATIO_MAX * o->sigma)
+		return "sigma_x and sigma_y are too far apart";
+	return NULL;
+}
+
+static bool keeps_anisotropic_rule(const struct fit_options *o, struct error *error)
+{
+	const char *fault = anisotropic_fault(o);
+
+	for (int n = 0; n < o->n_ndf && o->anisotropic && !fault; n++)
+		if (!ndf_has_anisotropy(o->ndf[n])) {
+			error_set(error, STATUS_DOMAIN, "%s has one roughness: it cannot be anisotropic",
+				  ndf_name(o->ndf[n]));
+			return false;
+		}
+	if (fault)
+		error_set(error, STATUS_DOMAIN, "%s", fault);
+	return !fault;
+}
+
 enum fit_rule fit_options_rule(const struct fit_options *o, struct error *error)
 {
 	if (check_ranges(o, error) != STATUS_OK)
@@ -89,6 +126,8 @@ enum fit_rule fit_options_rule(const struct fit_options *o, struct error *error)
 		error_set(error, STATUS_DOMAIN, "blend and unbounded exclude each other");
 		return FIT_RULE_BLEND;
 	}
+	if (!keeps_anisotropic_rule(o, error))
+		return FIT_RULE_ANISOTROPIC;
 	for (int n = 0; n < o->n_ndf; n++) {
 		if (ndf_is_tabulated(o->ndf[n]) && (!o->specular || o->algorithm)) {
 			error_set(error, STATUS_DOMAIN, "%s needs a specular term and the default algorithm",

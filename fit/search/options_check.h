@@ -16,12 +16,14 @@ enum fit_rule {
 	FIT_RULE_TERMS,     /* neither a diffuse nor a specular term */
 	FIT_RULE_BLEND,     /* a blend without bounds */
 	FIT_RULE_TABULATED, /* pl without a specular term, or by another algorithm than the default */
-	FIT_RULE_GAMMA,     /* a fixed gamma that some NDF of the list does not take in the form of Lambda asked for */
+	FIT_RULE_ANISOTROPIC, /* an NDF of the list is isotropic, or one roughness is fixed, or another algorithm; or sigma_y or angle
+				without `anisotropic` */
+	FIT_RULE_GAMMA, /* a fixed gamma that some NDF of the list does not take in the form of Lambda asked for */
 };
 
 /* fit_options_rule - the first rule that is broken, with a text that says what was expected and what was found.
  * Ranges: 1 .. FIT_NDFS_MAX NDFs, none of them NULL; every enum one of its values; max_theta in (0, 90]; threads in 1 ..
- * FIT_THREADS_MAX; starts in 0 .. FIT_STARTS_MAX; blend in [0, 1); sigma, ior NaN or in the domain of the fit; gamma NaN
+ * FIT_THREADS_MAX; starts in 0 .. FIT_STARTS_MAX; blend in [0, 1); sigma, sigma_y, ior NaN or in the domain of the fit; angle NaN or finite; gamma NaN
  * or above 0; time_s in (0, FIT_TIME_MAX_S]. A fixed value that no NDF of the list reads is no fault. */
 enum fit_rule fit_options_rule(const struct fit_options *options, struct error *error);
 

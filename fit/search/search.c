@@ -166,7 +166,7 @@ static int by_error(const void *a, const void *b)
 	return memcmp(p->x, q->x, sizeof p->x);
 }
 
-enum { STARTS_MAX = 24 };
+enum { STARTS_MAX = 24, FIRST_POINTS_MAX = STARTS_MAX + SPACE_VALUES };
 
 /* The local minima of the grid, best first. Returns how many, at most STARTS_MAX. */
 static int pick_starts(const struct search *s, struct space_point *grid, struct space_point starts[])
@@ -384,9 +384,11 @@ static void random_points(const struct search *s, struct space_point point[], in
 {
 	uint64_t state = s->options->seed;
 
-	for (int n = 0; n < count; n++)
+	for (int n = 0; n < count; n++) {
+		point[n] = (struct space_point){.error = 0};
 		for (int d = 0; d < s->space.dims; d++)
 			point[n].x[d] = s->space.lo[d] + (s->space.hi[d] - s->space.lo[d]) * next_uniform(&state);
+	}
 }
 
 /* How many of point[from .. count - 1] are within 0.1 % of the best of all, the known one included. */
@@ -422,7 +424,30 @@ static void note_slices(const struct search *s, const struct space_point *grid, 
 	}
 }
 
-/* The points to start from: the local minima of a scan. Returns how many, 0 on failure. */
+/* How far above the best of a scan the best of an index still counts. */
+#define BETWEEN 1.1
+
+/* Adds points between the indices of the scan: from one of them to the next F changes its form, and a minimum between two
+ * may look like a slope. There the other parameters are those of the better of both. Returns how many points there are. */
+static int add_between(const struct search *s, const struct scan_minima *minima, struct space_point point[], int count)
+{
+	const double enough = BETWEEN * (count > 0 ? point[0].error : 0);
+
+	for (int d = 0; d < s->space.dims; d++)
+		for (int i = 0; s->space.coordinate[d] == COORDINATE_IOR && i + 1 < s->space.axis[d].count; i++) {
+			const struct space_point *low = &minima->slice[d][i], *high = low + 1;
+			const struct space_point *better = low->error < high->error ? low : high;
+
+			if (better->error > enough)
+				continue;
+			point[count] = *better;
+			point[count++].x[d] = 0.5 * (low->x[d] + high->x[d]);
+		}
+	return count;
+}
+
+/* The points to start from: the local minima of a scan, and some between its points. Returns how many, at most
+ * FIRST_POINTS_MAX; 0 on failure. */
 static int first_points(struct search *s, struct space_point point[], struct scan_minima *minima, enum status *status)
 {
 	struct space_point *grid = calloc((size_t)grid_size(s, 0), sizeof *grid);
@@ -435,30 +460,26 @@ static int first_points(struct search *s, struct space_point point[], struct sca
 		count = pick_starts(s, grid, point);
 		if (count < 0)
 			*status = STATUS_NO_MEMORY;
+		else
+			count = add_between(s, minima, point, count);
 	}
 	free(grid);
 	return *status == STATUS_OK ? count : 0;
 }
 
-/* Runs the stages on the thinned tables. Returns how many points are left for the full one, best first. */
-static int descend(struct search *s, struct space_point point[], int count, struct found *found, enum status *status)
+/* Runs the stages on the thinned tables, from one of them on. Returns how many points are left for the full one, best
+ * first. */
+static int descend(struct search *s, int first_level, struct space_point point[], int count, struct found *found,
+		   enum status *status)
 {
-	const int n_random = s->options->starts;
-
-	for (int level = 0; level < SEARCH_LEVELS - 1 && *status == STATUS_OK; level++) {
-		int from = 0;
-
-		if (level > 0)
-			from = count = thin_out(s, point, count, &stages[level]);
-		if (level == 1) {
-			random_points(s, point + count, n_random);
-			count += n_random;
-		}
+	for (int level = first_level; level < SEARCH_LEVELS - 1 && *status == STATUS_OK; level++) {
+		if (level > first_level)
+			count = thin_out(s, point, count, &stages[level]);
 		begin_stage(s, stages[level].name);
 		if (count > 0)
 			*status = refine_all(s, level, point, count, found);
-		if (level <= 1)
-			found->starts_agreeing += agreeing(s, point, from, count);
+		if (level == first_level)
+			found->starts_agreeing += agreeing(s, point, 0, count);
 	}
 	return *status == STATUS_OK ? thin_out(s, point, count, &stages[SEARCH_LEVELS - 1]) : 0;
 }
@@ -476,22 +497,49 @@ static struct search new_search(const struct multiresolution *multiresolution, c
 	return s;
 }
 
+/* The random starts come after the search, which they can only improve. */
+static enum status search_random(struct search *s, struct space_point point[], struct found *found)
+{
+	const int n_random = s->options->starts;
+	struct found other = {.linear.error = INFINITY};
+	enum status status = STATUS_OK;
+
+	space_from_shape(&s->space, &found->shape, s->known.x);
+	s->known.error = found->linear.error;
+	random_points(s, point, n_random);
+	const int count = descend(s, 1, point, n_random, &other, &status);
+
+	if (count > 0 && status == STATUS_OK)
+		status = finish(s, point, count, &other);
+	found->starts += n_random;
+	found->starts_agreeing += other.starts_agreeing;
+	found->passes += other.passes;
+	if (status == STATUS_OK && other.linear.error < found->linear.error) {
+		found->shape = other.shape;
+		found->linear = other.linear;
+		found->limited = other.limited;
+	}
+	return status;
+}
+
 enum status search_run(const struct multiresolution *multiresolution, const struct fit_options *options,
 		       const struct ndf_class *class, struct found *found)
 {
 	struct search s = new_search(multiresolution, options, class);
-	struct space_point *point = calloc(STARTS_MAX + (size_t)options->starts + 1, sizeof *point);
+	struct space_point *point = calloc(FIRST_POINTS_MAX + (size_t)options->starts, sizeof *point);
 	enum status status = point ? STATUS_OK : STATUS_NO_MEMORY;
 	int count = 1;
 
 	*found = (struct found){.starts = 1, .starts_agreeing = s.space.dims == 0};
 	if (s.space.dims > 0 && status == STATUS_OK) {
 		count = first_points(&s, point, &found->minima, &status);
-		found->starts = count + options->starts;
-		count = descend(&s, point, count, found, &status);
+		found->starts = count;
+		count = descend(&s, 0, point, count, found, &status);
 	}
 	if (status == STATUS_OK)
 		status = finish(&s, point, count, found);
+	if (status == STATUS_OK && s.space.dims > 0 && options->starts > 0)
+		status = search_random(&s, point, found);
 	free(point);
 	found->evaluations = s.evaluations;
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
@@ -501,7 +549,7 @@ enum status search_estimate(const struct multiresolution *multiresolution, const
 			    const struct ndf_class *class, double *error)
 {
 	struct search s = new_search(multiresolution, options, class);
-	struct space_point point[STARTS_MAX + 1] = {{.error = 0}};
+	struct space_point point[FIRST_POINTS_MAX] = {{.error = 0}};
 	struct found found = {.starts = 0};
 	enum status status = STATUS_OK;
 	int count = s.space.dims > 0 ? first_points(&s, point, &found.minima, &status) : 1;
@@ -533,7 +581,7 @@ enum status search_from(const struct multiresolution *multiresolution, const str
 	*found = (struct found){.starts = n_given, .linear.error = INFINITY};
 	for (int n = 0; n < n_given; n++)
 		space_from_shape(&s.space, &given[n], point[n].x);
-	const int count = descend(&s, point, n_given, found, &status);
+	const int count = descend(&s, 0, point, n_given, found, &status);
 
 	if (count > 0 && status == STATUS_OK)
 		status = finish(&s, point, count, found);

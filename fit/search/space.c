@@ -4,9 +4,20 @@
 
 static double *parameter(struct shape *shape, enum coordinate c)
 {
-	double *const at[] = {&shape->sigma, &shape->gamma, &shape->ior, &shape->k};
-
-	return at[c];
+	switch (c) {
+	case COORDINATE_SIGMA:
+		return &shape->sigma;
+	case COORDINATE_GAMMA:
+		return &shape->gamma;
+	case COORDINATE_IOR:
+		return &shape->ior;
+	case COORDINATE_K:
+		return &shape->k;
+	case COORDINATE_ANGLE:
+		return &shape->angle;
+	default:
+		return &shape->stretch;
+	}
 }
 
 static double to_coordinate(enum coordinate c, double least_gamma, double value)
@@ -18,8 +29,10 @@ static double to_coordinate(enum coordinate c, double least_gamma, double value)
 		return log(value - least_gamma);
 	case COORDINATE_IOR:
 		return (value - 1) / (value + 1);
-	default:
+	case COORDINATE_K:
 		return value / (value + 1);
+	default:
+		return value;
 	}
 }
 
@@ -32,8 +45,10 @@ static double from_coordinate(enum coordinate c, double least_gamma, double x)
 		return least_gamma + exp(x);
 	case COORDINATE_IOR:
 		return (1 + x) / (1 - x);
-	default:
+	case COORDINATE_K:
 		return x / (1 - x);
+	default:
+		return x;
 	}
 }
 
@@ -48,6 +63,9 @@ static const struct axis scan_sigma = {{1e-4,   2e-4,   4e-4,   7e-4,   1e-3,   
 static const struct axis scan_gamma = {{1e-4, 1e-3, 0.005, 0.015, 0.04, 0.1, 0.25, 0.7, 2, 6.5, 48.5}, 11};
 static const struct axis scan_ior = {{1.03, 1.15, 1.35, 1.8, 3, 8, 60}, 7};
 static const struct axis scan_k = {{0, 0.5, 2, 6, 30}, 5};
+/* The scan is of isotropic shapes, unless the roughnesses are fixed. */
+static const struct axis scan_stretch = {{0}, 1};
+static const struct axis scan_angle = {{-75, -60, -45, -30, -15, 0, 15, 30, 45, 60, 75, 90}, 12};
 
 static struct axis gamma_axis(double least, double low, bool student_t)
 {
@@ -71,6 +89,25 @@ static void add_dim(struct space *s, enum coordinate c, double lowest, double hi
 	s->axis[d] = *axis;
 }
 
+static void add_axes(struct space *s, const struct fit_options *o)
+{
+	const double l = log(FIT_RATIO_MAX);
+
+	s->fixed.angle = isnan(o->angle) ? 0 : o->angle;
+	if (!isnan(o->sigma_y)) {
+		s->fixed.sigma = sqrt(o->sigma * o->sigma_y);
+		s->fixed.stretch = log(o->sigma / o->sigma_y);
+		/* Both ends are beyond a half turn: none is where a minimum may be. */
+		if (isnan(o->angle))
+			add_dim(s, COORDINATE_ANGLE, -180, 180, &scan_angle);
+	} else if (!isnan(o->angle)) {
+		add_dim(s, COORDINATE_STRETCH, -l, l, &scan_stretch);
+	} else {
+		add_dim(s, COORDINATE_STRETCH_COS, -l, l, &scan_stretch);
+		add_dim(s, COORDINATE_STRETCH_SIN, -l, l, &scan_stretch);
+	}
+}
+
 void space_init(struct space *s, const struct fit_options *o, const struct ndf_class *class)
 {
 	*s = (struct space){.fixed = {.sigma = o->sigma, .gamma = o->gamma, .ior = o->ior}};
@@ -79,19 +116,33 @@ void space_init(struct space *s, const struct fit_options *o, const struct ndf_c
 		s->fixed = (struct shape){.sigma = 1, .gamma = 2, .ior = 1.5};
 		return;
 	}
+	if (isnan(o->sigma) && ndf_has_gamma(class) && ndf_has_lambda_forms(class))
+		s->of_std = class;
 	if (isnan(o->sigma))
 		add_dim(s, COORDINATE_SIGMA, FIT_SIGMA_MIN, FIT_SIGMA_MAX, &scan_sigma);
 	if (ndf_has_gamma(class) && isnan(o->gamma)) {
 		const struct ndf_param *gamma = ndf_param_at(class, 1);
-		const struct axis axis = gamma_axis(gamma->min, gamma->search_min, ndf_has_lambda_forms(class));
+		const bool student_t = ndf_has_lambda_forms(class);
 
-		s->least_gamma = gamma->min;
+		/* t-family's gamma goes down to 2, where its D degenerates, not to STD's 1.5. */
+		s->least_gamma = student_t ? gamma->search_min - (FIT_GAMMA_MIN - 1.5) : gamma->min;
+		const struct axis axis = gamma_axis(s->least_gamma, gamma->search_min, student_t);
+
 		add_dim(s, COORDINATE_GAMMA, gamma->search_min, gamma->search_max, &axis);
 	}
 	if (o->fresnel != FRESNEL_NONE && isnan(o->ior))
 		add_dim(s, COORDINATE_IOR, FIT_IOR_MIN, FIT_IOR_MAX, &scan_ior);
 	if (o->fresnel == FRESNEL_CONDUCTOR)
 		add_dim(s, COORDINATE_K, 0, FIT_K_MAX, &scan_k);
+	if (o->anisotropic)
+		add_axes(s, o);
+}
+
+double space_sigma_scale(const struct space *s, double gamma)
+{
+	struct ndf ndf;
+
+	return s->of_std && ndf_init(&ndf, s->of_std, 1, 1, gamma) == STATUS_OK ? ndf.stretch : 1;
 }
 
 double space_value(const struct space *s, int d, double x)
@@ -99,12 +150,31 @@ double space_value(const struct space *s, int d, double x)
 	return fmin(fmax(from_coordinate(s->coordinate[d], s->least_gamma, x), s->lowest[d]), s->highest[d]);
 }
 
+static bool is_of_pair(enum coordinate c)
+{
+	return c == COORDINATE_STRETCH_COS || c == COORDINATE_STRETCH_SIN;
+}
+
+bool space_is_of_axes(const struct space *s, int d)
+{
+	return is_of_pair(s->coordinate[d]) || s->coordinate[d] == COORDINATE_STRETCH;
+}
+
 struct shape space_shape(const struct space *s, const double x[])
 {
 	struct shape shape = s->fixed;
+	double stretch[2] = {s->stretch[0], s->stretch[1]};
 
 	for (int d = 0; d < s->dims; d++)
-		*parameter(&shape, s->coordinate[d]) = space_value(s, d, x[d]);
+		if (is_of_pair(s->coordinate[d]))
+			stretch[s->coordinate[d] - COORDINATE_STRETCH_COS] = space_value(s, d, x[d]);
+		else
+			*parameter(&shape, s->coordinate[d]) = space_value(s, d, x[d]);
+	if (stretch[0] != 0 || stretch[1] != 0) {
+		shape.stretch = hypot(stretch[0], stretch[1]);
+		shape.angle = atan2(stretch[1], stretch[0]) * 90 / M_PI;
+	}
+	shape.sigma *= space_sigma_scale(s, shape.gamma);
 	return shape;
 }
 
@@ -116,14 +186,24 @@ double space_x(const struct space *s, int d, double value)
 void space_from_shape(const struct space *s, const struct shape *shape, double x[])
 {
 	struct shape copy = *shape;
+	const double twice = shape->angle * M_PI / 90;
 
+	copy.sigma /= space_sigma_scale(s, copy.gamma);
 	for (int d = 0; d < s->dims; d++)
-		x[d] = space_x(s, d, *parameter(&copy, s->coordinate[d]));
+		if (s->coordinate[d] == COORDINATE_STRETCH_COS)
+			x[d] = space_x(s, d, shape->stretch * cos(twice));
+		else if (s->coordinate[d] == COORDINATE_STRETCH_SIN)
+			x[d] = space_x(s, d, shape->stretch * sin(twice));
+		else
+			x[d] = space_x(s, d, *parameter(&copy, s->coordinate[d]));
 }
 
 void space_fix(struct space *s, int d, double value)
 {
-	*parameter(&s->fixed, s->coordinate[d]) = value;
+	if (is_of_pair(s->coordinate[d]))
+		s->stretch[s->coordinate[d] - COORDINATE_STRETCH_COS] = value;
+	else
+		*parameter(&s->fixed, s->coordinate[d]) = value;
 	s->dims--;
 	for (; d < s->dims; d++) {
 		s->coordinate[d] = s->coordinate[d + 1];

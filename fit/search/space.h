@@ -1,18 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* space - the shapes among which a fit searches: the free parameters among sigma, gamma, ior and k, in coordinates in
+/* space - the shapes among which a fit searches: the free parameters among sigma, gamma, ior, k and the axes, in coordinates in
  * which the valleys of the error are nearly straight. */
 #ifndef SPACE_H
 #define SPACE_H
 
 #include "fit/error/objective.h"
 
-enum { SPACE_DIMS = 4, SPACE_VALUES = 34 };
+enum { SPACE_DIMS = 6, SPACE_VALUES = 34 };
 
 enum coordinate {
-	COORDINATE_SIGMA, /* ln sigma */
+	COORDINATE_SIGMA, /* ln sigma, of STD's sigma for the distributions that are STD with another sigma */
 	COORDINATE_GAMMA, /* ln(gamma - the least gamma of the NDF) */
 	COORDINATE_IOR,   /* sqrt(F0) = (n - 1)/(n + 1) */
 	COORDINATE_K,     /* k/(k + 1) */
+	/* Of the axes: with l = ln(sigma_x/sigma_y) and the angle a */
+	COORDINATE_STRETCH_COS, /* l cos 2a, */
+	COORDINATE_STRETCH_SIN, /* l sin 2a: isotropy is a point like others, and no angle the end of a range */
+	COORDINATE_STRETCH,     /* l itself, where a is fixed */
+	COORDINATE_ANGLE,       /* a, where l is fixed */
 };
 
 /* struct axis - values of one parameter, ascending: points of a grid. */
@@ -27,8 +32,12 @@ struct space {
 	double lo[SPACE_DIMS], hi[SPACE_DIMS];          /* of each coordinate */
 	double lowest[SPACE_DIMS], highest[SPACE_DIMS]; /* of the parameters themselves */
 	double least_gamma;
+	/* Where not NULL, sigma stands in the space as STD's sigma of the same distribution: hyper-cauchy and t-family are STD,
+	 * and along their own sigma and gamma the error has a long curved valley. */
+	const struct ndf_class *of_std;
 	struct axis axis[SPACE_DIMS];
 	struct shape fixed; /* values of the parameters that are not searched */
+	double stretch[2];  /* the same of the first two coordinates of the axes */
 };
 
 /* struct space_point - a point of a space, and E there on the table at hand. */
@@ -43,9 +52,13 @@ void space_init(struct space *space, const struct fit_options *options, const st
 /* space_shape - the shape at a point; space_from_shape - the reverse, values out of range moved to the nearest end. */
 struct shape space_shape(const struct space *space, const double x[]);
 void space_from_shape(const struct space *space, const struct shape *shape, double x[]);
+/* space_sigma_scale - sigma of a shape over the sigma that stands for it in the space; 1 where it is the same. */
+double space_sigma_scale(const struct space *space, double gamma);
 /* space_x - dimension d's coordinate of a value of its parameter; space_value - the reverse. */
 double space_x(const struct space *space, int d, double value);
 double space_value(const struct space *space, int d, double x);
+/* space_is_of_axes - whether dimension d is one of the axes' coordinates but COORDINATE_ANGLE. */
+bool space_is_of_axes(const struct space *space, int d);
 /* space_fix - takes dimension d out: its parameter has this value from now on, gamma = inf included. */
 void space_fix(struct space *space, int d, double value);
 

@@ -309,7 +309,8 @@ static unsigned bit_of(enum coordinate c)
 	static const unsigned bit[] = {[COORDINATE_SIGMA] = BOUND_SIGMA,
 				       [COORDINATE_GAMMA] = BOUND_GAMMA,
 				       [COORDINATE_IOR] = BOUND_IOR,
-				       [COORDINATE_K] = BOUND_K};
+				       [COORDINATE_K] = BOUND_K,
+				       [COORDINATE_ANGLE] = BOUND_ANGLE};
 
 	return bit[c];
 }
@@ -396,6 +397,8 @@ static enum status ask(struct refit_context *q, int n, unsigned determined, bool
 	enum status status = STATUS_OK;
 
 	*bits = 0;
+	if (n < q->space.dims && space_is_of_axes(&q->space, n))
+		return STATUS_OK; /* the isotropic fit tells: fit.c */
 	if (n < q->space.dims) {
 		if (!any_shape && !(bit_of(q->space.coordinate[n]) & determined))
 			status = shape_parameter(q, n, &undetermined);

@@ -8,7 +8,8 @@ enum term {
 	TERM_SPECULAR = 1 << 1,
 	TERM_COLOUR = 1 << 2,
 	TERM_FRESNEL = 1 << 3,
-	TERMS = 1 << 4
+	TERM_AXES = 1 << 4, /* sigma_x, sigma_y and their angle */
+	TERMS = 1 << 5
 };
 
 struct variant {
@@ -20,7 +21,8 @@ static unsigned all_terms(const struct fit_options *options)
 {
 	const bool fresnel = options->specular && options->fresnel != FRESNEL_NONE;
 	return (options->diffuse ? TERM_DIFFUSE : 0u) | (options->specular ? TERM_SPECULAR : 0u) |
-	       (options->gray ? 0u : TERM_COLOUR) | (fresnel ? TERM_FRESNEL : 0u);
+	       (options->gray ? 0u : TERM_COLOUR) | (fresnel ? TERM_FRESNEL : 0u) |
+	       (options->anisotropic ? TERM_AXES : 0u);
 }
 
 /* The shape's free parameters that an NDF has besides sigma. */
@@ -35,7 +37,7 @@ static bool is_variant(const struct fit_options *options, struct variant v)
 	const bool specular = v.terms & TERM_SPECULAR;
 	return !(v.terms & ~all) && v.terms & (TERM_DIFFUSE | TERM_SPECULAR) &&
 	       /* Without a specular term there is nothing to tell NDFs or Fresnel terms apart. */
-	       (specular || (v.ndf == 0 && !(v.terms & TERM_FRESNEL)));
+	       (specular || (v.ndf == 0 && !(v.terms & (TERM_FRESNEL | TERM_AXES))));
 }
 
 static int parameters(const struct fit_options *options, struct variant v)
@@ -45,6 +47,8 @@ static int parameters(const struct fit_options *options, struct variant v)
 	if (!(v.terms & TERM_SPECULAR))
 		return n;
 	n += channels + (isnan(options->sigma) ? 1 : 0) + (has_free_gamma(options, v.ndf) ? 1 : 0);
+	if (v.terms & TERM_AXES)
+		n += (isnan(options->sigma_y) ? 1 : 0) + (isnan(options->angle) ? 1 : 0);
 	if (v.terms & TERM_FRESNEL)
 		n += (isnan(options->ior) ? 1 : 0) + (options->fresnel == FRESNEL_CONDUCTOR ? 1 : 0);
 	return n;
@@ -99,6 +103,11 @@ static struct fit_options variant_options(const struct fit_options *options, str
 	o.diffuse = v.terms & TERM_DIFFUSE;
 	o.specular = v.terms & TERM_SPECULAR;
 	o.gray = !(v.terms & TERM_COLOUR);
+	if (!(v.terms & TERM_AXES)) {
+		o.anisotropic = false;
+		o.sigma = isnan(o.sigma_y) ? o.sigma : NAN;
+		o.sigma_y = o.angle = NAN;
+	}
 	if (o.specular && !(v.terms & TERM_FRESNEL))
 		o.fresnel = FRESNEL_NONE;
 	return o;

@@ -133,6 +133,7 @@ static enum status process(struct run *run, struct batch_file *file)
 		const struct result_source source = batch_source(run->batch, file);
 		if (run->batch->store)
 			drop_known(run->batch, &source, &fit);
+		file->kept = fit.n_ndf == 0;
 		if (fit.n_ndf > 0) {
 			suspects_find(&measurement, &fit.criterion, &file->suspects);
 			suspects_words(&file->suspects, file->words);
@@ -219,7 +220,7 @@ static bool hand_on(struct run *run, size_t *n_failed)
 	const struct batch *batch = run->batch;
 	struct progress progress = progress_start(batch->n, "files", batch->options->quiet);
 	bool stopped = false;
-	size_t next = 0;
+	size_t next = 0, kept = 0;
 	pthread_mutex_lock(&run->lock);
 	while (run->running > 0 || next < run->n_finished) {
 		if (next == run->n_finished) {
@@ -230,7 +231,9 @@ static bool hand_on(struct run *run, size_t *n_failed)
 		struct batch_file *file = &batch->file[run->finished[next++]];
 		pthread_mutex_unlock(&run->lock);
 		progress_erase(&progress);
+		kept += file->kept;
 		progress.done = next;
+		progress.kept = kept;
 		file->done = true;
 		*n_failed += file->failed;
 		report_suspects(file);
@@ -244,9 +247,9 @@ static bool hand_on(struct run *run, size_t *n_failed)
 	}
 	pthread_mutex_unlock(&run->lock);
 	progress_erase(&progress);
-	if (progress.shown)
-		fprintf(stderr, "%zu of %zu files in %.1f s, %zu failed\n", next, batch->n,
-			search_clock() - progress.start, *n_failed);
+	if (progress.shown && batch->n > 1)
+		fprintf(stderr, "%zu of %zu files in %.1f s, %zu kept, %zu failed\n", next, batch->n,
+			search_clock() - progress.start, kept, *n_failed);
 	return stopped;
 }
 

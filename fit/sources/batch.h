@@ -19,6 +19,7 @@ struct batch_file {
 	struct csv_table rows;         /* new rows: none for NDFs that the store has, a failure's row per NDF */
 	struct trace trace;            /* if the options want one */
 	bool done;                     /* false: not begun, or interrupted */
+	bool kept;                     /* the store had all its rows */
 	bool failed;
 	struct error error; /* why it failed */
 };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/sources/distribution_source.h"
+#include "fit/cli/option_value.h"
 #include "fit/cli/report.h"
 
 #include <stdlib.h>
@@ -36,7 +37,9 @@ static enum status describe(const struct options *options, struct described *ite
 	};
 	if (length >= sizeof item->sigma || (comma && strlen(comma + 1) >= sizeof item->sigma_y))
 		return error_set(error, STATUS_DOMAIN, "bad --sigma: expected one number or two");
-	return distribution_make(&item->words, &item->distribution, error);
+	struct error why;
+	const enum status status = distribution_make(&item->words, &item->distribution, &why);
+	return status == STATUS_OK ? status : error_set(error, status, "%.400s%s", why.text, option_comma_hint(sigma));
 }
 
 /* The distribution of a model, whose table stays with the model, and the words that describe it; a table has

@@ -10,7 +10,9 @@
 #include "fit/results/store.h"
 #include "fit/sources/batch.h"
 
+#include <ctype.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -66,24 +68,60 @@ static char plain(char c, bool first)
 	return '_';
 }
 
-/* Names that become the same file name, or differ only in case, are distinguished by a number. */
-static void name_files(struct materials *materials)
+/* A file name that is in use, whatever the case of its letters. */
+struct used_name {
+	const char *name; /* NULL: a free place of the table */
+	size_t number;    /* the last that was put behind it to tell another name from it */
+};
+
+/* A hash table of the file names in use: at least half of its places, a power of two, are free. */
+struct used_names {
+	struct used_name *place;
+	size_t n_places;
+};
+
+static struct used_name *used_name_find(const struct used_names *used, const char *name)
 {
-	enum { NUMBER_ROOM = 24 };
-	for (size_t i = 0; i < materials->n; i++) {
-		struct material *m = &materials->material[i];
-		size_t length = 0;
-		for (const char *c = m->name; *c && length < MATERIAL_FILE_NAME_SIZE - NUMBER_ROOM; c++, length++)
-			m->file_name[length] = plain(*c, length == 0);
-		if (length == 0)
-			m->file_name[length++] = '_';
-		for (size_t k = 0, number = 1; k < i; k++) {
-			if (strcasecmp(m->file_name, materials->material[k].file_name))
-				continue;
-			snprintf(m->file_name + length, NUMBER_ROOM, "-%zu", ++number);
-			k = (size_t)-1; /* the new name may be in use as well */
-		}
+	uint64_t hash = 0xcbf29ce484222325u;
+	for (const char *c = name; *c; c++)
+		hash = (hash ^ (uint64_t)tolower((unsigned char)*c)) * 0x100000001b3u;
+	for (size_t at = (size_t)(hash ^ hash >> 32);; at++) {
+		struct used_name *place = &used->place[at & (used->n_places - 1)];
+		if (!place->name || !strcasecmp(place->name, name))
+			return place;
 	}
+}
+
+enum { NUMBER_ROOM = 24 };
+
+static void name_file(struct material *m, const struct used_names *used)
+{
+	size_t length = 0;
+	for (const char *c = m->name; *c && length < MATERIAL_FILE_NAME_SIZE - NUMBER_ROOM; c++, length++)
+		m->file_name[length] = plain(*c, length == 0);
+	if (length == 0)
+		m->file_name[length++] = '_';
+	struct used_name *same = used_name_find(used, m->file_name), *place = same;
+	while (place->name) {
+		snprintf(m->file_name + length, NUMBER_ROOM, "-%zu", ++same->number);
+		place = used_name_find(used, m->file_name); /* the new name may be in use as well */
+	}
+	*place = (struct used_name){m->file_name, 1};
+}
+
+/* Names that become the same file name, or differ only in case, are distinguished by a number. */
+static enum status name_files(struct materials *materials)
+{
+	struct used_names used = {.n_places = 16};
+	while (used.n_places < 2 * materials->n)
+		used.n_places *= 2;
+	used.place = calloc(used.n_places, sizeof *used.place);
+	if (!used.place)
+		return STATUS_NO_MEMORY;
+	for (size_t i = 0; i < materials->n; i++)
+		name_file(&materials->material[i], &used);
+	free(used.place);
+	return STATUS_OK;
 }
 
 static enum status group_rows(struct materials *materials)
@@ -101,8 +139,7 @@ static enum status group_rows(struct materials *materials)
 		}
 		materials->material[materials->n - 1].n_rows++;
 	}
-	name_files(materials);
-	return STATUS_OK;
+	return name_files(materials);
 }
 
 /* Where rows come from */
@@ -250,7 +287,7 @@ static enum status read_models(const struct material *material, int threads, str
 		data->n++;
 		const enum status status = result_model(row, &fit->model, &fit->options, &fit->pwl, &why);
 		if (status != STATUS_OK)
-			return error_set(error, status, "cannot show '%s', %.16s: %.200s", name, fit->ndf, why.text);
+			return error_set(error, status, "cannot show '%s': %.200s", name, why.text);
 	}
 	if (data->n == 0)
 		return error_set(error, STATUS_NO_DATA, "cannot show '%s': it has no fit", name);

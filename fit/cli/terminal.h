@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* terminal - text that fits where it is shown. */
+#ifndef TERMINAL_H
+#define TERMINAL_H
+
+#include <stdio.h>
+
+/* terminal_width - columns of the terminal behind a stream, at least 40; 80 where there is none. */
+int terminal_width(FILE *stream);
+
+/* terminal_wrap - a text, broken at blanks into lines of at most `width` columns. The first begins at column `at`; the
+ * others are indented by `indent`. No newline at the end. Returns the column reached. */
+int terminal_wrap(FILE *file, const char *text, int at, int indent, int width);
+
+#endif
