@@ -25,6 +25,10 @@ static int check(const struct options *options)
 		return options_usage(COMMAND_EXPORT, "expected FILE to fit, or --from, or --kd and --ks");
 	if (model_source_kind(options) != SOURCE_ROWS && options->fit.n_ndf != 1)
 		return options_usage(COMMAND_EXPORT, "--ndf takes one name here");
+	const bool bsdf = options->format == EXPORT_BSDF || options->format == EXPORT_BSDF_RGB;
+	if (!bsdf && (options_given(options, "accuracy") || options_given(options, "size")))
+		return options_usage(COMMAND_EXPORT, "--%s means nothing without --format bsdf or bsdf-rgb",
+				     options_given(options, "accuracy") ? "accuracy" : "size");
 	if (export_is_binary(options->format) && !options->output)
 		return options_usage(COMMAND_EXPORT, "--format %s is binary and needs -o FILE",
 				     export_format_name(options->format));

@@ -50,30 +50,58 @@ static bool directions(int h, int d, int p, struct vec3 *wi, struct vec3 *wo, do
 	return wi->z > 0 && wo->z > 0;
 }
 
-/* The L1 distance, weighted by cos_i cos_o, to the model, and its norm, both up to the same factor. */
-static double l1_error(const struct rgl *rgl, const struct cook_torrance *model, int threads)
+enum { DIRECTIONS = HALF * DIFFERENCE * AZIMUTHS };
+
+static bool directions_of(int n, struct vec3 *wi, struct vec3 *wo, double *measure)
 {
-	double difference = 0, norm = 0;
-
-#pragma omp parallel for schedule(dynamic) num_threads(threads) reduction(+ : difference, norm)
-	for (int h = 0; h < HALF; h++)
-		for (int d = 0; d < DIFFERENCE; d++)
-			for (int p = 0; p < AZIMUTHS; p++) {
-				struct vec3 wi, wo;
-				double measure, want[MERL_CHANNELS], got[MERL_CHANNELS] = {0};
-
-				if (!directions(h, d, p, &wi, &wo, &measure) || !rgl_f(rgl, wi, wo, got))
-					continue;
-				cook_torrance_f(model, wi, wo, want);
-				for (int c = 0; c < MERL_CHANNELS; c++) {
-					difference += fabs(got[c] - want[c]) * wi.z * wo.z * measure;
-					norm += want[c] * wi.z * wo.z * measure;
-				}
-			}
-	return norm > 0 ? difference / norm : 0;
+	return directions(n / (DIFFERENCE * AZIMUTHS), n / AZIMUTHS % DIFFERENCE, n % AZIMUTHS, wi, wo, measure);
 }
 
-static enum status try_layout(const struct rgl_layout *layout, double *error, struct error *why)
+/* The model's values there, newly allocated: each refinement is held to them. NULL when out of memory. */
+static double (*values_of(const struct cook_torrance *model, int threads))[MERL_CHANNELS]
+{
+	double(*value)[MERL_CHANNELS] = calloc(DIRECTIONS, sizeof *value);
+
+#pragma omp parallel for schedule(dynamic, 256) num_threads(threads)
+	for (int n = 0; n < DIRECTIONS; n++) {
+		struct vec3 wi, wo;
+		double measure;
+
+		if (value && directions_of(n, &wi, &wo, &measure))
+			cook_torrance_f(model, wi, wo, value[n]);
+	}
+	return value;
+}
+
+/* The L1 distance, weighted by cos_i cos_o, divided by the norm of the model. Sums go over HALF parts in their order, so
+ * that the number of threads changes nothing. */
+static double l1_error(const struct rgl *rgl, double (*value)[MERL_CHANNELS], int threads)
+{
+	const int part = DIRECTIONS / HALF;
+	double difference[HALF] = {0}, norm[HALF] = {0};
+
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+	for (int h = 0; h < HALF; h++)
+		for (int n = h * part; n < (h + 1) * part; n++) {
+			struct vec3 wi, wo;
+			double measure, got[MERL_CHANNELS];
+
+			if (!directions_of(n, &wi, &wo, &measure) || !rgl_f(rgl, wi, wo, got))
+				continue;
+			for (int c = 0; c < MERL_CHANNELS; c++) {
+				difference[h] += fabs(got[c] - value[n][c]) * wi.z * wo.z * measure;
+				norm[h] += value[n][c] * wi.z * wo.z * measure;
+			}
+		}
+	for (int h = 1; h < HALF; h++) {
+		difference[0] += difference[h];
+		norm[0] += norm[h];
+	}
+	return norm[0] > 0 ? difference[0] / norm[0] : 0;
+}
+
+static enum status try_layout(const struct rgl_layout *layout, double (*value)[MERL_CHANNELS], double *error,
+			      struct error *why)
 {
 	unsigned char *bytes;
 	size_t size;
@@ -86,7 +114,7 @@ static enum status try_layout(const struct rgl_layout *layout, double *error, st
 	free(bytes);
 	if (status != STATUS_OK)
 		return status;
-	*error = l1_error(rgl, layout->context, layout->threads);
+	*error = l1_error(rgl, value, layout->threads);
 	rgl_free(rgl);
 	return STATUS_OK;
 }
@@ -106,34 +134,41 @@ static struct rgl_layout layout_of(const struct export *export, size_t side, con
 /* Half vectors along each side; theta_i are half as many, since more of them would gain less. */
 static const size_t nodes[] = {16, 24, 32, 40, 48, 64, 80, 96, 128, 160, 192, 256};
 
-static enum status bsdf_prepare(struct export *export, struct error *error)
+/* Sets nodes of the export; *found is the error of what has as many. */
+static enum status refine(struct export *export, double (*value)[MERL_CHANNELS], double *found, struct error *error)
 {
-	size_t taken = 0;
-	double found = 0;
-
 	for (size_t n = 0; n < sizeof nodes / sizeof *nodes; n++) {
 		const struct rgl_layout layout = layout_of(export, nodes[n], "-");
 		const double size = (double)rgl_layout_size(&layout);
 
-		if (size > export->source.size && n > 0)
-			break;
 		if (size > export->source.size)
-			return error_set(error, STATUS_UNSUPPORTED, "the smallest file has %.0f bytes", size);
-		const enum status status = try_layout(&layout, &found, error);
+			return n > 0 ? STATUS_OK
+				     : error_set(error, STATUS_UNSUPPORTED, "the smallest file has %.0f bytes", size);
+		const enum status status = try_layout(&layout, value, found, error);
 		if (status != STATUS_OK)
 			return status;
-		taken = nodes[n];
+		export->nodes = nodes[n];
 		if (export->source.fit->cancel && *export->source.fit->cancel)
 			return STATUS_INTERRUPTED;
-		if (found <= export->source.accuracy / 100)
-			break;
+		if (*found <= export->source.accuracy / 100)
+			return STATUS_OK;
 	}
-	export->nodes = taken;
+	return STATUS_OK;
+}
+
+static enum status bsdf_prepare(struct export *export, struct error *error)
+{
+	double found = 0, (*value)[MERL_CHANNELS] = values_of(&export->model, export->source.fit->threads);
+	if (!value)
+		return error_set(error, STATUS_NO_MEMORY, "%s", status_str(STATUS_NO_MEMORY));
+	const enum status status = refine(export, value, &found, error);
+
+	free(value);
 	snprintf(export->why, sizeof export->why,
 		 "a table of the model at %zu theta_i and %zu x %zu half vectors; error against the model %.2g %% (L1, "
 		 "weight cosine)",
-		 taken / 2, taken, taken, 100 * found);
-	return STATUS_OK;
+		 export->nodes / 2, export->nodes, export->nodes, 100 * found);
+	return status;
 }
 
 static enum status bsdf_write(const struct export *export, FILE *file, struct error *error)
