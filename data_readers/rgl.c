@@ -429,19 +429,39 @@ static enum status make_entries(const struct rgl *rgl, const struct tensor *vali
 	return status;
 }
 
+static enum status parse(const unsigned char *bytes, size_t size, struct tensor_file *file, struct rgl **rgl,
+			 struct error *why)
+{
+	*rgl = calloc(1, sizeof **rgl);
+	if (!*rgl)
+		return STATUS_NO_MEMORY;
+	enum status status = tensor_file_parse(bytes, size, file, why);
+	if (status == STATUS_OK)
+		status = read_fields(file, *rgl, why);
+	if (status != STATUS_OK) {
+		rgl_free(*rgl);
+		*rgl = NULL;
+	}
+	return status;
+}
+
+enum status rgl_parse(const unsigned char *bytes, size_t size, struct rgl **rgl, struct error *why)
+{
+	struct tensor_file file;
+
+	return parse(bytes, size, &file, rgl, why);
+}
+
 static enum status read_bytes(const unsigned char *bytes, size_t size, enum gamut gamut,
 			      struct measurement *measurement, struct error *why)
 {
-	struct rgl *rgl = calloc(1, sizeof *rgl);
+	struct rgl *rgl;
 	struct tensor_file file;
+	enum status status = parse(bytes, size, &file, &rgl, why);
 
-	if (!rgl)
-		return STATUS_NO_MEMORY;
-	enum status status = tensor_file_parse(bytes, size, &file, why);
-	if (status == STATUS_OK)
-		status = read_fields(&file, rgl, why);
-	if (status == STATUS_OK)
-		status = make_entries(rgl, tensor_file_find(&file, "valid"), gamut, measurement, why);
+	if (status != STATUS_OK)
+		return status;
+	status = make_entries(rgl, tensor_file_find(&file, "valid"), gamut, measurement, why);
 	if (status != STATUS_OK) {
 		rgl_free(rgl);
 		return status;

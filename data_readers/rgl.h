@@ -16,6 +16,10 @@
 MUST_CHECK enum status rgl_read(const char *path, enum gamut gamut, struct measurement *measurement,
 				struct error *error);
 
+/* rgl_parse - the fields of a file in memory, without entries: *rgl, for rgl_f(), is to be freed. STATUS_FORMAT with a text that
+ * does not name the file; STATUS_NO_MEMORY. */
+MUST_CHECK enum status rgl_parse(const unsigned char *bytes, size_t size, struct rgl **rgl, struct error *why);
+
 /* rgl_f - the BRDF, 1/sr, between the nodes as the database's own evaluator has it; a channel that is out of gamut is
  * negative. Given: unit vectors. Returns: false, f untouched, where a direction is at or below the horizon. */
 bool rgl_f(const struct rgl *rgl, struct vec3 wi, struct vec3 wo, double f[MERL_CHANNELS]);

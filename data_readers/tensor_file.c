@@ -214,3 +214,82 @@ enum status tensor_floats(const struct tensor *tensor, float **values, struct er
 	*values = all;
 	return STATUS_OK;
 }
+
+/* ---- Writing ---- */
+
+void tensor_file_add(struct tensor_file *file, const char *name, enum tensor_type type, int dims, const size_t shape[],
+		     const void *data)
+{
+	struct tensor *tensor = &file->field[file->n++];
+
+	*tensor = (struct tensor){.dims = dims, .type = (int)type, .count = 1, .data = data};
+	memcpy(tensor->name, name, strlen(name) + 1);
+	for (int d = 0; d < dims; d++) {
+		tensor->shape[d] = shape[d];
+		tensor->count *= shape[d];
+	}
+}
+
+static unsigned char *put_number(unsigned char *to, uint64_t number, size_t size)
+{
+	const uint64_t little = htole64(number);
+
+	memcpy(to, &little, size);
+	return to + size;
+}
+
+static void put_data(unsigned char *to, const struct tensor *tensor)
+{
+	const size_t size = size_of_type((uint64_t)tensor->type);
+
+	if (size == 1) {
+		memcpy(to, tensor->data, tensor->count);
+		return;
+	}
+	for (size_t at = 0; at < tensor->count; at++) {
+		uint32_t number;
+
+		memcpy(&number, tensor->data + at * size, sizeof number);
+		to = put_number(to, number, size);
+	}
+}
+
+static size_t data_after(size_t offset, const struct tensor *tensor)
+{
+	return (offset + tensor->count * size_of_type((uint64_t)tensor->type) + 7) & ~(size_t)7;
+}
+
+enum status tensor_file_encode(const struct tensor_file *file, unsigned char **bytes, size_t *size)
+{
+	size_t header = sizeof magic + 2 + 4;
+
+	for (int n = 0; n < file->n; n++)
+		header += 2 + strlen(file->field[n].name) + 2 + 1 + 8 + 8 * (size_t)file->field[n].dims;
+	const size_t first = (header + 7) & ~(size_t)7;
+	*size = first;
+	for (int n = 0; n < file->n; n++)
+		*size = data_after(*size, &file->field[n]);
+	*bytes = calloc(*size, 1);
+	if (!*bytes)
+		return STATUS_NO_MEMORY;
+	unsigned char *to = *bytes;
+	memcpy(to, magic, sizeof magic);
+	to = put_number(to + sizeof magic, 1, 2);
+	to = put_number(to, (uint64_t)file->n, 4);
+	size_t offset = first;
+	for (int n = 0; n < file->n; n++) {
+		const struct tensor *tensor = &file->field[n];
+		const size_t length = strlen(tensor->name);
+
+		to = put_number(to, length, 2);
+		memcpy(to, tensor->name, length);
+		to = put_number(to + length, (uint64_t)tensor->dims, 2);
+		to = put_number(to, (uint64_t)tensor->type, 1);
+		to = put_number(to, offset, 8);
+		for (int d = 0; d < tensor->dims; d++)
+			to = put_number(to, tensor->shape[d], 8);
+		put_data(*bytes + offset, tensor);
+		offset = data_after(offset, tensor);
+	}
+	return STATUS_OK;
+}

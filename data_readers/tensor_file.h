@@ -46,4 +46,13 @@ const struct tensor *tensor_file_find(const struct tensor_file *file, const char
  * that is not finite; STATUS_NO_MEMORY. */
 MUST_CHECK enum status tensor_floats(const struct tensor *tensor, float **values, struct error *why);
 
+/* tensor_file_add - one more field; its data are borrowed: count numbers of this machine, float32, or bytes, uint8. count is
+ * set from the shape. At most TENSOR_FIELDS_MAX fields, TENSOR_DIMS_MAX dimensions, names below TENSOR_NAME_SIZE. */
+void tensor_file_add(struct tensor_file *file, const char *name, enum tensor_type type, int dims, const size_t shape[],
+		     const void *data);
+
+/* tensor_file_encode - the bytes of a file with the fields that were added, newly allocated. Data begin at multiples of 8.
+ * STATUS_NO_MEMORY. */
+MUST_CHECK enum status tensor_file_encode(const struct tensor_file *file, unsigned char **bytes, size_t *size);
+
 #endif

@@ -562,8 +562,8 @@ static void json_holds_a_table_of_nodes(void **state)
 	}
 	assert_int_equal(pwl_init(&pwl, 40, theta, D, NULL), STATUS_OK);
 	ndf_from_pwl(&model.ndf, &pwl);
-	const struct export_source source = {&model,       &fit, 0.123456789012345, "name \"quoted\" \\ \xc3\xa9",
-					     "a/b.binary", NULL};
+	const struct export_source source = {
+		&model, &fit, 0.123456789012345, "name \"quoted\" \\ \xc3\xa9", "a/b.binary", NULL, 0, 0};
 	FILE *file = fopen("pl.json", "w");
 	assert_non_null(file);
 	assert_int_equal(export_prepare(&export, EXPORT_JSON, &source, &error), STATUS_OK);
@@ -747,10 +747,12 @@ static void refusals_are_one_line(void **state)
 		const char *part;
 	} bad[] = {
 		{"--kd 1", 2, "expected --format"},
-		{"--kd 1 --format xyz", 2, "expected one of brdf, merl, mitsuba, pbrt, gltf, json"},
+		{"--kd 1 --format xyz", 2, "expected one of brdf, merl, mitsuba, pbrt, gltf, bsdf, bsdf-rgb, json"},
 		{"--format json", 2, "expected FILE to fit"},
 		{"a b --format json", 2, "expected one FILE"},
 		{"--kd 1 --format merl", 2, "needs -o FILE"},
+		{"--kd 1 --format json --accuracy 1", 2, "--accuracy means nothing without --format bsdf"},
+		{"--kd 1 --format json --size 1e6", 2, "--size means nothing without --format bsdf"},
 		{"--kd 1 --gray --format json", 2, "--gray means nothing"},
 		{"--kd 1 --row 1 --format json", 2, "--row means nothing"},
 		{"x.binary --ndf std,ggx --format json", 2, "--ndf takes one name"},
@@ -764,7 +766,7 @@ static void refusals_are_one_line(void **state)
 		{"--kd 1 --format json -o none/x.json", 1, "none/x.json"},
 		{"--kd 1 --format json -o /dev/full", 1, "/dev/full"},
 		{"--kd 1 --format merl -o /dev/full", 1, "/dev/full"},
-		{"--sigma 0.2 --gamma 1.7 --format pbrt --ks 0.1,0.2,0.3 -o left.pbrt", 1, "colour"},
+		{"--sigma 0.2 --gamma 1.7 --format pbrt --ks 0.1,0.2,0.3 -o left.pbrt", 1, "--format bsdf has"},
 	};
 
 	(void)state;

@@ -64,7 +64,8 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "any row of it (--row), or from given parameters (--kd, --ks, ...). The first lines say\n"
 		 "whether the export is exact or approximate, and why. Where the target has no such model, one\n"
 		 "that it has is fitted in its place, to FILE or the file of the row if that can be read, else\n"
-		 "to the model's own table; the export says what that costs in error.\n"},
+		 "to the model's own table; the export says what that costs in error. bsdf and bsdf-rgb (spectra,\n"
+		 "rgb) are for the measured materials of pbrt-v4 and Mitsuba 3: any model, as a table.\n"},
 	[COMMAND_NDF] =
 		{"ndf", "[NAME]", "D, P22, P2, Lambda, G1 and pdf of a distribution as a table",
 		 "Tabulates a normal distribution function: D and pdf of the normal at theta and phi, P22 of its\n"
@@ -271,6 +272,8 @@ struct options options_default(enum command command)
 		.kd = {0, 0, 0},
 		.environment = "studio",
 		.size = 256,
+		.accuracy = 0.2,
+		.file_size = 16e6,
 		.pixel_samples = 64,
 	};
 	if (command == COMMAND_EVAL || command == COMMAND_SYNTH) {
@@ -518,7 +521,7 @@ static int find_standard_output(struct options *options)
 	if (options->resume)
 		return options_usage(command, "--resume needs -o FILE, not standard output");
 	options->to_standard_output = true;
-	if (command != COMMAND_EXPORT || options->format != EXPORT_MERL)
+	if (command != COMMAND_EXPORT || !export_is_binary(options->format))
 		options->output = NULL;
 	return -1;
 }

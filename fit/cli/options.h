@@ -31,6 +31,7 @@ struct options {
 	const char *from; /* the result table that has the model */
 	int row;          /* its row, from 1; 0: the one of this material and NDF */
 	enum export_format format;
+	double accuracy, file_size; /* percent, bytes */
 	/* A distribution, for ndf and sample, in words: distribution.h. */
 	const char *sigma_words, *gamma_words, *params;
 	const char *theta, *phi; /* lists of angles: angles.h */

@@ -25,8 +25,13 @@ static int check(const struct options *options)
 		return options_usage(COMMAND_EXPORT, "expected FILE to fit, or --from, or --kd and --ks");
 	if (model_source_kind(options) != SOURCE_ROWS && options->fit.n_ndf != 1)
 		return options_usage(COMMAND_EXPORT, "--ndf takes one name here");
-	if (options->format == EXPORT_MERL && !options->output)
-		return options_usage(COMMAND_EXPORT, "--format merl is binary and needs -o FILE");
+	const bool bsdf = options->format == EXPORT_BSDF || options->format == EXPORT_BSDF_RGB;
+	if (!bsdf && (options_given(options, "accuracy") || options_given(options, "size")))
+		return options_usage(COMMAND_EXPORT, "--%s means nothing without --format bsdf or bsdf-rgb",
+				     options_given(options, "accuracy") ? "accuracy" : "size");
+	if (export_is_binary(options->format) && !options->output)
+		return options_usage(COMMAND_EXPORT, "--format %s is binary and needs -o FILE",
+				     export_format_name(options->format));
 	return -1;
 }
 
@@ -112,7 +117,9 @@ static enum status write_model(const struct options *options, const struct sourc
 					     .error = model->error,
 					     .material = model->material,
 					     .path = measured ? measured : model->path,
-					     .measurement = measured ? measurement : NULL};
+					     .measurement = measured ? measurement : NULL,
+					     .accuracy = options->accuracy,
+					     .size = options->file_size};
 	struct export export;
 	struct error why;
 	status = export_prepare(&export, options->format, &source, &why);
@@ -121,10 +128,9 @@ static enum status write_model(const struct options *options, const struct sourc
 				 why.text);
 	if (*options->cancel)
 		return STATUS_INTERRUPTED;
-	if (options->format != EXPORT_MERL)
-		return write_text(&export, options->output, error);
-	status = write_merl(&export, options->output, error);
-	if (status == STATUS_OK && !options->quiet)
+	status = options->format == EXPORT_MERL ? write_merl(&export, options->output, error)
+						: write_text(&export, options->output, error);
+	if (status == STATUS_OK && !options->quiet && export_is_binary(options->format))
 		fprintf(stderr, "%s\n", export.why);
 	return status;
 }

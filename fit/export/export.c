@@ -7,8 +7,9 @@
 #include <string.h>
 
 static const struct export_target *const targets[EXPORT_FORMATS] = {
-	[EXPORT_BRDF] = &export_brdf, [EXPORT_MERL] = &export_merl, [EXPORT_MITSUBA] = &export_mitsuba,
-	[EXPORT_PBRT] = &export_pbrt, [EXPORT_GLTF] = &export_gltf, [EXPORT_JSON] = &export_json,
+	[EXPORT_BRDF] = &export_brdf, [EXPORT_MERL] = &export_merl,         [EXPORT_MITSUBA] = &export_mitsuba,
+	[EXPORT_PBRT] = &export_pbrt, [EXPORT_GLTF] = &export_gltf,         [EXPORT_JSON] = &export_json,
+	[EXPORT_BSDF] = &export_bsdf, [EXPORT_BSDF_RGB] = &export_bsdf_rgb,
 };
 
 const char *export_format_name(enum export_format format)
@@ -29,6 +30,11 @@ enum status export_format_find(const char *name, enum export_format *format)
 bool export_wants_samples(enum export_format format, const struct cook_torrance *model)
 {
 	return targets[format]->replaces && targets[format]->replaces(model);
+}
+
+bool export_is_binary(enum export_format format)
+{
+	return format == EXPORT_MERL || format == EXPORT_BSDF || format == EXPORT_BSDF_RGB;
 }
 
 enum status export_prepare(struct export *export, enum export_format format, const struct export_source *source,

@@ -10,16 +10,18 @@
 #include <stdio.h>
 
 enum export_format {
-	EXPORT_BRDF,    /* BRDF Explorer, GLSL: every model */
-	EXPORT_MERL,    /* MERL .binary: every model, to the resolution of the table */
-	EXPORT_MITSUBA, /* Mitsuba 3, XML: Lambert and GGX or Beckmann, uncorrelated G */
-	EXPORT_PBRT,    /* pbrt-v4: Lambert and GGX, correlated G, one ks for all channels */
-	EXPORT_GLTF,    /* glTF 2.0: always approximate */
-	EXPORT_JSON,    /* our own (model_json.h): every model */
+	EXPORT_BRDF,     /* BRDF Explorer, GLSL: every model */
+	EXPORT_MERL,     /* MERL .binary: every model, to the resolution of the table */
+	EXPORT_MITSUBA,  /* Mitsuba 3, XML: Lambert and GGX or Beckmann, uncorrelated G */
+	EXPORT_PBRT,     /* pbrt-v4: Lambert and GGX, correlated G, one ks for all channels */
+	EXPORT_GLTF,     /* glTF 2.0: always approximate */
+	EXPORT_BSDF,     /* RGL tensor_file with spectra: pbrt-v4 and the spectral variants of Mitsuba 3, every model */
+	EXPORT_BSDF_RGB, /* the same with rgb: the rgb variants of Mitsuba 3 */
+	EXPORT_JSON,     /* our own (model_json.h): every model */
 	EXPORT_FORMATS
 };
 
-/* export_format_name - "brdf", "merl", "mitsuba", "pbrt", "gltf", "json"; "unknown" for any other value. */
+/* export_format_name - "brdf", "merl", "mitsuba", "pbrt", "gltf", "bsdf", "bsdf-rgb", "json"; "unknown" for any other value. */
 const char *export_format_name(enum export_format format);
 /* export_format_find - the reverse. Returns STATUS_DOMAIN, *format untouched, for another name. */
 MUST_CHECK enum status export_format_find(const char *name, enum export_format *format);
@@ -31,6 +33,8 @@ struct export_source {
 	double error;                          /* E under that weight; NaN: not known */
 	const char *material, *path;           /* either may be NULL */
 	const struct measurement *measurement; /* what it was fitted to; NULL: not at hand */
+	double accuracy;                       /* EXPORT_BSDF: refined until the L1 error is this, percent, */
+	double size;                           /* or the file would be larger than this, bytes */
 };
 
 enum { EXPORT_TEXT = 512 };
@@ -43,6 +47,7 @@ struct export
 	struct cook_torrance model; /* the source's, or the one fitted in its place */
 	bool substitute;            /* the latter */
 	char why[EXPORT_TEXT];      /* one line: "exact: ..." or "approximate: ..." */
+	size_t nodes;               /* EXPORT_BSDF: half vectors along each side; 0 for others */
 	char cost[EXPORT_TEXT];     /* one line: what the substitute costs; "" if there is none */
 };
 
@@ -56,6 +61,9 @@ bool export_wants_samples(enum export_format format, const struct cook_torrance 
  * STATUS_NO_DATA, STATUS_NO_MEMORY, STATUS_INTERRUPTED. */
 MUST_CHECK enum status export_prepare(struct export *export, enum export_format format,
 				      const struct export_source *source, struct error *error);
+
+/* export_is_binary - whether the format is no text: what it says about itself has to be told elsewhere too. */
+bool export_is_binary(enum export_format format);
 
 /* export_write - writes it, in any format but EXPORT_MERL. Errors in writing show in ferror().
  * Returns STATUS_OK, STATUS_UNSUPPORTED (a number of the model is out of the target's range), STATUS_NO_MEMORY. */

@@ -286,10 +286,11 @@ enum status substitute_prepare(struct export *export, const struct target *targe
 	struct measurement own;
 	use_as_it_is(export);
 	if (target->gray && !is_gray(given->ks) && !(export_max(given->kd) > 0))
-		return error_set(error, STATUS_UNSUPPORTED,
-				 "%s has one ks for all channels, and without kd the colour of ks %.5g, %.5g, %.5g "
-				 "would be lost (a fit with --gray --gaf correlated has one)",
-				 target->name, given->ks[0], given->ks[1], given->ks[2]);
+		return error_set(
+			error, STATUS_UNSUPPORTED,
+			"%s has one ks for all channels, and without kd the colour of ks %.5g, %.5g, %.5g "
+			"would be lost (a fit with --gray --gaf correlated has one; --format bsdf has every model)",
+			target->name, given->ks[0], given->ks[1], given->ks[2]);
 	export->substitute = substitute_needed(target, given, lacks);
 	if (!export->substitute && target->blend && !fits_blend(given) && export_max(given->ks) > 0) {
 		export->substitute = true;

@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "data_readers/rgl_write.h"
+#include "data_readers/spectrum.h"
+#include "data_readers/tensor_file.h"
+#include "data_readers/warp.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Fine enough for a peak at theta_m = 0.1 degrees; they cost little. */
+enum { DENSITY_NODES = 1024, WARP_NODES = 256, BANDS = 3, WAVELENGTHS = 2 * BANDS };
+
+/* Three bands with steps at 495 and 590 nm. With these the spectrum of every colour of sRGB is nowhere negative; bands of
+ * other limits, or spectra linear between three wavelengths, lack that. A gray one is flat. */
+static const float wavelength[WAVELENGTHS] = {380, 490, 500, 585, 595, 780};
+
+static const double theta_last = 89.9 * M_PI / 180;
+
+/* struct content - the arrays of the file. */
+struct content {
+	size_t n_colours; /* planes */
+	float *theta, *density, *warp, *luminance, *colour;
+	double from_rgb[BANDS][MERL_CHANNELS]; /* the values of the bands */
+};
+
+static bool allocate(struct content *content, const struct rgl_layout *layout)
+{
+	const size_t plane = layout->n_nodes * layout->n_nodes;
+
+	content->n_colours = layout->spectra ? WAVELENGTHS : MERL_CHANNELS;
+	content->theta = malloc(layout->n_theta * sizeof(float));
+	content->density = malloc((size_t)2 * DENSITY_NODES * sizeof(float));
+	content->warp = malloc(layout->n_theta * 2 * WARP_NODES * sizeof(float));
+	content->luminance = malloc(layout->n_theta * plane * sizeof(float));
+	content->colour = malloc(layout->n_theta * content->n_colours * plane * sizeof(float));
+	return content->theta && content->density && content->warp && content->luminance && content->colour;
+}
+
+static void free_content(struct content *content)
+{
+	free(content->theta);
+	free(content->density);
+	free(content->warp);
+	free(content->luminance);
+	free(content->colour);
+}
+
+/* The inverse of what the bands' spectra count in the channels. */
+static enum status find_bands(struct content *content)
+{
+	double nm[WAVELENGTHS], weight[MERL_CHANNELS * WAVELENGTHS];
+	double to_rgb[MERL_CHANNELS][BANDS];
+
+	for (int j = 0; j < WAVELENGTHS; j++)
+		nm[j] = (double)wavelength[j];
+	const enum status status = spectrum_weights(nm, WAVELENGTHS, weight);
+	if (status != STATUS_OK)
+		return status;
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		for (int b = 0; b < BANDS; b++)
+			to_rgb[c][b] = weight[c * WAVELENGTHS + 2 * b] + weight[c * WAVELENGTHS + 2 * b + 1];
+	for (int b = 0; b < BANDS; b++)
+		for (int c = 0; c < MERL_CHANNELS; c++) {
+			const int c1 = (c + 1) % 3, c2 = (c + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
+
+			content->from_rgb[b][c] = to_rgb[c1][b1] * to_rgb[c2][b2] - to_rgb[c1][b2] * to_rgb[c2][b1];
+		}
+	double determinant = 0;
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		determinant += content->from_rgb[0][c] * to_rgb[c][0];
+	for (int b = 0; b < BANDS; b++)
+		for (int c = 0; c < MERL_CHANNELS; c++)
+			content->from_rgb[b][c] /= determinant;
+	return STATUS_OK;
+}
+
+static double theta_of(double x)
+{
+	return x * x * (M_PI / 2);
+}
+
+static void fill_densities(struct content *content, const struct rgl_layout *layout)
+{
+	for (size_t x = 0; x < DENSITY_NODES; x++)
+		content->density[x] = content->density[DENSITY_NODES + x] =
+			(float)layout->density(layout->context, theta_of((double)x / (DENSITY_NODES - 1)));
+	for (size_t t = 0; t < layout->n_theta; t++)
+		content->theta[t] = (float)(theta_last * (double)t / (double)(layout->n_theta - 1));
+	/* All slices are equal: the density of theta_m, without the constant of its azimuth. The root of the cosine keeps
+	 * nodes from the horizon, where most of them see nothing. */
+	for (size_t at = 0; at < layout->n_theta * 2 * WARP_NODES; at++) {
+		const double x = (double)(at % WARP_NODES) / (WARP_NODES - 1), theta = theta_of(x);
+
+		content->warp[at] =
+			(float)(layout->density(layout->context, theta) * x * sin(theta) * sqrt(fmax(0, cos(theta))));
+	}
+}
+
+/* The planes at one theta_i. Luminance is what importance sampling by the warp leaves to be done: f cos_o by the density of
+ * wo that the warp makes, which goes as density(m) sqrt(cos_m) / (4 wi.m). The bound keeps it finite. */
+static bool fill_slice(struct content *content, const struct rgl_layout *layout, const struct warp *warp, size_t t)
+{
+	static const double luminance[MERL_CHANNELS] = {0.2126, 0.7152, 0.0722};
+	const struct grid density = {.param = {{wavelength, 1}, {wavelength, 1}},
+				     .width = DENSITY_NODES,
+				     .height = 2,
+				     .value = content->density};
+	const size_t n = layout->n_nodes, plane = n * n;
+	const double theta_i = (double)content->theta[t], param[WARP_PARAMS] = {0, 0};
+	const struct vec3 wi = {sin(theta_i), 0, cos(theta_i)};
+	float *light = content->luminance + t * plane, *colour = content->colour + t * content->n_colours * plane;
+	double total = 0;
+	bool finite = true;
+
+	for (size_t at = 0; at < plane; at++) {
+		const struct square_point u = {(double)(at % n) / (double)(n - 1), (double)(at / n) / (double)(n - 1)};
+		double pdf, f[MERL_CHANNELS], sum = 0;
+		const struct square_point p = warp_sample(warp, u, param, &pdf);
+		const double theta = theta_of(p.x), phi = 2 * M_PI * p.y - M_PI;
+		const struct vec3 m = {sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)};
+		const double divisor = grid_at(&density, p, param); /* sigma is 1/4 */
+
+		layout->f_cos(layout->context, wi, m, f);
+		for (int c = 0; c < MERL_CHANNELS; c++)
+			sum += luminance[c] * f[c] / divisor;
+		for (size_t c = 0; c < content->n_colours; c++) {
+			const double *row = content->from_rgb[c / 2];
+			const double value = layout->spectra ? row[0] * f[0] + row[1] * f[1] + row[2] * f[2] : f[c];
+
+			colour[c * plane + at] = (float)(value / divisor);
+			finite = finite && isfinite(colour[c * plane + at]);
+		}
+		light[at] = (float)fmax(0, sum * vec3_dot(wi, m) / sqrt(fmax(m.z, 0.05)));
+		total += (double)light[at];
+	}
+	for (size_t at = 0; at < plane && !(total > 0); at++)
+		light[at] = 1;
+	return finite;
+}
+
+static enum status fill(struct content *content, const struct rgl_layout *layout)
+{
+	struct error why;
+	struct warp warp;
+	bool finite = true;
+	fill_densities(content, layout);
+	const struct grid grid = {
+		.param = {{wavelength, 1}, {wavelength, 1}}, .width = WARP_NODES, .height = 2, .value = content->warp};
+	const enum status status = warp_init(&warp, &grid, &why);
+	if (status != STATUS_OK)
+		return status == STATUS_NO_MEMORY ? status : STATUS_DOMAIN;
+#pragma omp parallel for schedule(dynamic) num_threads(layout->threads) reduction(&& : finite)
+	for (size_t t = 0; t < layout->n_theta; t++)
+		finite = fill_slice(content, layout, &warp, t) && finite;
+	warp_free(&warp);
+	return finite ? STATUS_OK : STATUS_DOMAIN;
+}
+
+static enum status encode(const struct content *content, const struct rgl_layout *layout, unsigned char **bytes,
+			  size_t *size)
+{
+	static const float phi = 0, sigma[4] = {0.25F, 0.25F, 0.25F, 0.25F};
+	static const unsigned char jacobian = 1, version[3] = {0, 4, 1}; /* as the database's files have it */
+	const size_t n = layout->n_nodes, n_theta = layout->n_theta, length = strlen(layout->description);
+	struct tensor_file file = {.n = 0};
+
+	tensor_file_add(&file, "description", TENSOR_UINT8, 1, (size_t[]){length}, layout->description);
+	tensor_file_add(&file, "version", TENSOR_UINT8, 1, (size_t[]){sizeof version}, version);
+	tensor_file_add(&file, "jacobian", TENSOR_UINT8, 1, (size_t[]){1}, &jacobian);
+	tensor_file_add(&file, "phi_i", TENSOR_FLOAT32, 1, (size_t[]){1}, &phi);
+	tensor_file_add(&file, "theta_i", TENSOR_FLOAT32, 1, (size_t[]){n_theta}, content->theta);
+	tensor_file_add(&file, "sigma", TENSOR_FLOAT32, 2, (size_t[]){2, 2}, sigma);
+	tensor_file_add(&file, "ndf", TENSOR_FLOAT32, 2, (size_t[]){2, DENSITY_NODES}, content->density);
+	tensor_file_add(&file, "vndf", TENSOR_FLOAT32, 4, (size_t[]){1, n_theta, 2, WARP_NODES}, content->warp);
+	tensor_file_add(&file, "luminance", TENSOR_FLOAT32, 4, (size_t[]){1, n_theta, n, n}, content->luminance);
+	tensor_file_add(&file, layout->spectra ? "spectra" : "rgb", TENSOR_FLOAT32, 5,
+			(size_t[]){1, n_theta, content->n_colours, n, n}, content->colour);
+	if (layout->spectra)
+		tensor_file_add(&file, "wavelengths", TENSOR_FLOAT32, 1, (size_t[]){WAVELENGTHS}, wavelength);
+	return tensor_file_encode(&file, bytes, size);
+}
+
+size_t rgl_layout_size(const struct rgl_layout *layout)
+{
+	const size_t planes = 1 + (layout->spectra ? WAVELENGTHS : MERL_CHANNELS);
+
+	return sizeof(float) * (layout->n_theta * (planes * layout->n_nodes * layout->n_nodes + 2 * WARP_NODES) +
+				2 * DENSITY_NODES) +
+	       2048;
+}
+
+enum status rgl_encode(const struct rgl_layout *layout, unsigned char **bytes, size_t *size)
+{
+	struct content content = {.n_colours = 0};
+	enum status status = STATUS_NO_MEMORY;
+
+	if (allocate(&content, layout))
+		status = find_bands(&content);
+	if (status == STATUS_OK)
+		status = fill(&content, layout);
+	if (status == STATUS_OK)
+		status = encode(&content, layout, bytes, size);
+	free_content(&content);
+	return status;
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* rgl_write - makes isotropic files of the format of rgl.h, with all fields that renderers ask for.
+ *
+ * Half vectors are warped in x alone, where theta_m = pi/2 x^2, by one density for all theta_i. The azimuth is even. */
+#ifndef RGL_WRITE_H
+#define RGL_WRITE_H
+
+#include "data_readers/merl.h"
+#include "src/vec3.h"
+
+/* struct rgl_layout - what a file is made of. */
+struct rgl_layout {
+	const char *description;
+	bool spectra; /* fields spectra and wavelengths, whose colour under D65 is that of f_cos; else rgb, linear sRGB */
+	size_t n_theta; /* theta_i, from 0 to 89.9 degrees; at least 2 */
+	size_t n_nodes; /* along each side of the warped square; at least 2 */
+	int threads;
+	/* The density of half vectors that makes the warp, and by which values are divided, per solid angle up to a factor;
+	 * above 0. */
+	double (*density)(const void *context, double theta_m);
+	/* The BRDF times cos_o at a half vector m of wi; wo may be below the horizon, where values are used for interpolation
+	 * alone. */
+	void (*f_cos)(const void *context, struct vec3 wi, struct vec3 m, double f_cos[MERL_CHANNELS]);
+	const void *context;
+};
+
+/* rgl_layout_size - about how many bytes a file has. */
+size_t rgl_layout_size(const struct rgl_layout *layout);
+
+/* rgl_encode - the bytes of the file, newly allocated. STATUS_NO_MEMORY, STATUS_DOMAIN (a value is not finite). */
+MUST_CHECK enum status rgl_encode(const struct rgl_layout *layout, unsigned char **bytes, size_t *size);
+
+#endif
