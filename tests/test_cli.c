@@ -780,8 +780,14 @@ static void within_takes_the_simplest(void **state)
 	assert_string_equal(table.row[0][RESULT_SIGMA], "");
 	check_rel(result_number(table.row[0], RESULT_KD_R), 0.4, 1e-3, "kd_r");
 	assert_string_equal(table.row[0][RESULT_KD_R], table.row[0][RESULT_KD_B]);
-	expect_part(table.row[0][RESULT_OPTIONS], "within=1", __LINE__);
+	expect_part(table.row[0][RESULT_OPTIONS], "within=1 chosen=gray+no-specular", __LINE__);
 	csv_table_free(&table);
+	/* What was chosen is no other request: the row is kept. */
+	shell("\"$STDFIT\" gray.binary --ndf ggx --sigma 0.3 --ior 1.5 --max-theta 20 --within 1% -q -o w.csv && cp "
+	      "w.csv v.csv &&"
+	      " \"$STDFIT\" gray.binary --ndf ggx --sigma 0.3 --ior 1.5 --max-theta 20 --within 1% -q --resume -o "
+	      "w.csv && cmp w.csv v.csv");
+	expect_code(0);
 	stdfit("a.binary " CHEAP " --within 1%");
 	expect_code(0);
 	table = read_table("stdout");

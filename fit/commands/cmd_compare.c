@@ -100,7 +100,7 @@ static enum status check_rows(const struct csv_table *rows, const char *path, st
 	if (!rows->n_rows)
 		return error_set(error, STATUS_NO_DATA, "'%s' has no rows to compare", name);
 	for (size_t i = 1; i < rows->n_rows; i++)
-		if (strcmp(rows->row[0][RESULT_OPTIONS], rows->row[i][RESULT_OPTIONS]))
+		if (!result_same_options(rows->row[0][RESULT_OPTIONS], rows->row[i][RESULT_OPTIONS]))
 			return error_set(error, STATUS_FORMAT, "'%s' row %zu: made with other options than row 1", name,
 					 i + 1);
 	return contradiction_check(rows, path, error);

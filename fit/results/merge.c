@@ -115,7 +115,7 @@ static enum status check_origin(const struct merge *m, struct error *error)
 		const struct merge_part *part = &m->part[i];
 		if (strcmp(part->cell[RESULT_VERSION], first->cell[RESULT_VERSION]))
 			return other_version(part, first, error);
-		if (strcmp(part->cell[RESULT_OPTIONS], first->cell[RESULT_OPTIONS]))
+		if (!result_same_options(part->cell[RESULT_OPTIONS], first->cell[RESULT_OPTIONS]))
 			return other_options(part, first, error);
 	}
 	return STATUS_OK;

@@ -352,6 +352,19 @@ enum result_column result_difference(char *const *a, char *const *b)
 	return c;
 }
 
+/* Where the words of --within's choice begin, or the end. */
+static size_t asked_length(const char *options)
+{
+	const char *chosen = strstr(options, RESULT_CHOSEN);
+	return chosen ? (size_t)(chosen - options) : strlen(options);
+}
+
+bool result_same_options(const char *a, const char *b)
+{
+	const size_t length = asked_length(a);
+	return length == asked_length(b) && !memcmp(a, b, length);
+}
+
 bool result_one_row_a_file(char *const *row)
 {
 	return strstr(row[RESULT_OPTIONS], "within=");

@@ -99,6 +99,10 @@ bool result_failed(char *const *row);
 
 /* result_difference - the first column but seconds in which two rows differ; RESULT_COLUMNS when there is none. */
 enum result_column result_difference(char *const *a, char *const *b);
+/* What stands before the terms that --within has left out of a model, at the end of the row's options. */
+#define RESULT_CHOSEN " chosen="
+/* result_same_options - whether the options of two rows ask for the same; what --within chose may differ. */
+bool result_same_options(const char *a, const char *b);
 /* result_one_row_a_file - whether a row was made with --within: then its file has one row, of whatever NDF was chosen, or,
  * where the fit failed, a row for each NDF. */
 bool result_one_row_a_file(char *const *row);

@@ -204,7 +204,8 @@ static size_t first_old(const struct store *store, const char *path)
 static bool is_current(char *const *row, const struct result_source *source)
 {
 	return !result_failed(row) && (!source->input || !strcmp(row[RESULT_INPUT], source->input)) &&
-	       !strcmp(row[RESULT_OPTIONS], source->options) && !strcmp(row[RESULT_VERSION], STDFIT_VERSION);
+	       result_same_options(row[RESULT_OPTIONS], source->options) &&
+	       !strcmp(row[RESULT_VERSION], STDFIT_VERSION);
 }
 
 bool store_has(const struct store *store, const struct result_source *source, const char *ndf)

@@ -4,6 +4,7 @@
 #include "data_readers/text_quote.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/progress.h"
+#include "fit/cli/text_stream.h"
 #include "fit/search/within.h"
 
 #include <fcntl.h>
@@ -91,18 +92,62 @@ static void drop_known(const struct batch *batch, const struct result_source *so
 	fit->n_ndf = kept;
 }
 
+/* The options as asked for, and which terms --within has left out. Owned; NULL when out of memory. */
+static char *chosen_text(const char *asked, const struct fit_options *all, const struct fit_options *chosen)
+{
+	const struct {
+		bool is;
+		const char *word;
+	} left_out[] = {{chosen->gray && !all->gray, "gray"},
+			{!chosen->diffuse && all->diffuse, "no-diffuse"},
+			{!chosen->specular && all->specular, "no-specular"},
+			{chosen->specular && chosen->fresnel != all->fresnel, "no-fresnel"},
+			{chosen->specular && !chosen->anisotropic && all->anisotropic, "isotropic"}};
+	struct text_stream stream;
+	const char *between = RESULT_CHOSEN;
+	if (!text_stream_open(&stream))
+		return NULL;
+	fputs(asked, stream.file);
+	for (size_t i = 0; i < sizeof left_out / sizeof *left_out; i++)
+		if (left_out[i].is) {
+			fprintf(stream.file, "%s%s", between, left_out[i].word);
+			between = "+";
+		}
+	return text_stream_close(&stream);
+}
+
+/* within_run(), and in *source the options that say what it chose: *text, to be freed. */
+static enum status fit_within(const struct fit_context *context, const struct measurement *measurement,
+			      const struct options *options, struct fit_options *fit, struct fit_result *result,
+			      struct result_source *source, char **text, struct error *error)
+{
+	const struct fit_options all = *fit;
+	const enum status status = within_run(context, measurement, fit, options->within, fit, result, error);
+	if (status != STATUS_OK)
+		return status;
+	*text = chosen_text(source->options, &all, fit);
+	if (*text) {
+		source->options = *text;
+		return STATUS_OK;
+	}
+	for (int i = 0; i < fit->n_ndf; i++)
+		fit_result_free(&result[i]);
+	return error_set(error, STATUS_NO_MEMORY, "out of memory");
+}
+
 static enum status fit_samples(struct run *run, struct batch_file *file, const struct measurement *measurement,
 			       struct fit_options *fit)
 {
 	const struct options *options = run->batch->options;
-	const struct result_source source = batch_source(run->batch, file);
+	struct result_source source = batch_source(run->batch, file);
 	const struct fit_context *context;
 	struct fit_result result[FIT_NDFS_MAX];
+	char *text = NULL;
 	enum status status = get_context(run, measurement->n_phi_d, &context);
 	if (status != STATUS_OK)
 		return error_set(&file->error, status, "%s", status_str(status));
 	if (!isnan(options->within))
-		status = within_run(context, measurement, fit, options->within, fit, result, &file->error);
+		status = fit_within(context, measurement, options, fit, result, &source, &text, &file->error);
 	else
 		status = fit_run(context, measurement, fit, result, &file->error);
 	if (status != STATUS_OK)
@@ -112,6 +157,7 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 			status = error_set(&file->error, STATUS_NO_MEMORY, "out of memory");
 		fit_result_free(&result[i]);
 	}
+	free(text);
 	return status;
 }
 
