@@ -454,6 +454,7 @@ static void wrong_usage_is_refused(void **state)
 		{"ndf std --sigma 0.2 --gamma 2 --theta 1,,2", 2, "bad angles"},
 		{"ndf ggx --sigma 0.2 --theta 0:90:0.1 --phi 0:360:0.2", 2, "901 angles theta and 1801 phi: expected"},
 		{"ndf nix --sigma 0.2 --theta 1", 2, "no NDF 'nix'"},
+		{"sample ellipsoid --sigma 0.2 --gaf correlated", 2, "--gaf means nothing for ellipsoid"},
 		{"ndf std --sigma 0.2 --theta 1", 2, "std needs gamma"},
 		{"ndf gtr --sigma 0.2,0.3 --gamma 2 --theta 1", 2, "gtr takes one sigma"},
 		{"ndf std --sigma 0.2 --gamma 1.5 --theta 1", 2, "bad gamma 1.5: std takes one above 1.5, up to inf"},

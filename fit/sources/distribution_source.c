@@ -8,10 +8,13 @@
 
 int distribution_source_check(const struct options *options)
 {
+	if (!options->from && options->n_paths != 1)
+		return options_usage(options->command, "expected one NAME, or --from, found %d", options->n_paths);
+	/* Its weight has masking alone, of wo. */
+	if (!options->from && !strcmp(options->path[0], "ellipsoid") && options_given(options, "gaf"))
+		return options_usage(options->command, "--gaf means nothing for ellipsoid");
 	if (!options->from)
-		return options->n_paths == 1 ? -1
-					     : options_usage(options->command, "expected one NAME, or --from, found %d",
-							     options->n_paths);
+		return -1;
 	if (options->n_paths)
 		return options_usage(options->command, "NAME and --from exclude each other");
 	if (options_given(options, "params"))
