@@ -208,6 +208,14 @@ STDFIT_MUST_CHECK enum stdfit_status stdfit_measurement_write(const stdfit_measu
 /* stdfit_measurement_from_values - from 3 * 8100 * n_phi_d doubles, kept as floats; what is beyond float is masked. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_measurement_from_values(stdfit_measurement **measurement, int n_phi_d,
 								    const double *values, struct stdfit_error *error);
+/* stdfit_measurement_from_samples - of n entries that lie anywhere: directions wi and wo, values in 1/sr, red, green, blue of
+ * each entry in turn. solid_angles: what each stands for in the two hemispheres, sr^2, or NULL: estimated. Entries with a
+ * direction at or below the horizon, or a value that is negative or not finite, are left out; STDFIT_NO_DATA if all are.
+ * Where wi has more than one azimuth, the sample counts as anisotropic. Its n_phi_d is 0. */
+STDFIT_MUST_CHECK enum stdfit_status stdfit_measurement_from_samples(stdfit_measurement **measurement, size_t n,
+								     const double *wi, const double *wo,
+								     const double *values, const double *solid_angles,
+								     struct stdfit_error *error);
 /* stdfit_measurement_from_model - an ideal measurement of a model. bins: "node" (NULL), entries at whole degrees, or
  * "centre", half a degree on. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_measurement_from_model(stdfit_measurement **measurement,
@@ -252,6 +260,7 @@ struct stdfit_options {
 	int diffuse, specular; /* whether the model has the terms: one at least */
 	int zero_is_missing;   /* entries that are 0 in all channels count as not measured */
 	int gray;              /* one kd and one ks for all channels */
+	int anisotropic;       /* of samples: two roughnesses and the angle of their axes, all searched */
 	int starts;            /* 0 .. 100000 extra random starts */
 	int threads;           /* 1 .. 1024; changes no result */
 	uint64_t seed;         /* of random starts */
@@ -281,19 +290,24 @@ enum stdfit_parameter {
 	STDFIT_PARAMETER_N = 4,
 	STDFIT_PARAMETER_KD = 8,  /* red; green and blue are the two next bits */
 	STDFIT_PARAMETER_KS = 64, /* likewise */
-	STDFIT_PARAMETER_K = 512
+	STDFIT_PARAMETER_K = 512,
+	STDFIT_PARAMETER_ANGLE = 1024
 };
 
-/* stdfit_parameter_name - "sigma", "gamma", "n", "kd_r", ..., "ks_b", "k" of one such bit; NULL for any other number. */
+/* stdfit_parameter_name - "sigma", "gamma", "n", "kd_r", ..., "ks_b", "k", "angle" of one such bit; NULL for any other number. */
 const char *stdfit_parameter_name(unsigned bit);
 
 /* struct stdfit_result - of one NDF. */
 struct stdfit_result {
 	const char *ndf; /* its name */
 	struct stdfit_model model;
-	double sigma, gamma; /* of the NDF; NaN where it has none */
-	double error;        /* E under the fit's own weight */
-	double lower_bound;  /* certified: no kd, ks of this shape goes below it */
+	double sigma,
+		gamma; /* of the NDF; NaN where it has none; of an anisotropic one sigma = sqrt(sigma_x sigma_y) */
+	double sigma_x, sigma_y; /* along its axes; NaN where it has none */
+	double angle;            /* degrees: azimuth of the axis of sigma_x, (-90, 90]; 0 if isotropic */
+	double error;            /* E under the fit's own weight */
+	double error_isotropic;  /* of an anisotropic fit: of the best isotropic model; else NaN */
+	double lower_bound;      /* certified: no kd, ks of this shape goes below it */
 	struct stdfit_metrics metrics;
 	int converged; /* 0: a limit on evaluations or time ended the search */
 	int starts, starts_agreeing;

@@ -3,6 +3,8 @@
  * internals give. */
 #include "check.h"
 #include "fit/stdfit.h"
+#include "make_scattered.h"
+#include "make_table.h"
 #include "src/ndf.h"
 #include "src/vndf.h"
 #include <limits.h>
@@ -326,6 +328,53 @@ static void a_child_can_fit_on_one_thread(void **state)
 	assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
+/* Samples that lie anywhere, of a brushed surface. */
+static void samples_are_fitted_with_axes(void **state)
+{
+	struct cook_torrance truth = make_model("ggx", 0.3, 2, 1.5);
+	struct stdfit_options options = stdfit_options_default();
+	stdfit_measurement *measurement;
+	stdfit_context *context;
+	struct stdfit_result result;
+	enum { N = 1500 };
+	static double wi[3 * N], wo[3 * N], values[3 * N];
+
+	(void)state;
+	assert_int_equal(ndf_init(&truth.ndf, ndf_find("ggx"), 0.3, 0.15, 2), STATUS_OK);
+	struct measurement made = make_scattered(&truth, N, 0.02, 5);
+	for (size_t i = 0; i < N; i++) {
+		memcpy(wi + 3 * i, &made.scattered->wi[i], 3 * sizeof *wi);
+		memcpy(wo + 3 * i, &made.scattered->wo[i], 3 * sizeof *wo);
+		for (size_t c = 0; c < 3; c++)
+			values[3 * i + c] = (double)made.scattered->value[c][i];
+	}
+	measurement_free(&made);
+	assert_int_equal(stdfit_measurement_from_samples(&measurement, N, wi, wo, values, NULL, &error), STDFIT_OK);
+	assert_int_equal(stdfit_measurement_n_phi_d(measurement), 0);
+	options.ndfs = "ggx";
+	options.anisotropic = 1;
+	assert_int_equal(stdfit_context_new(&context, 0, &options, &error), STDFIT_OK);
+	assert_int_equal(stdfit_fit(context, measurement, &options, 1, &result, &error), STDFIT_OK);
+	check_rel(result.sigma_x, 0.3, 0.02, "sigma_x");
+	check_rel(result.sigma_y, 0.15, 0.02, "sigma_y");
+	check_abs(result.angle, 0, 1, "angle");
+	assert_true(result.error < result.error_isotropic);
+	stdfit_result_clear(&result);
+	stdfit_context_free(context);
+	stdfit_measurement_free(measurement);
+	wi[5] = 2;
+	expect(stdfit_measurement_from_samples(&measurement, N, wi, wo, values, NULL, &error), STDFIT_DOMAIN,
+	       "wi number 1 is no unit vector");
+	assert_null(measurement);
+	wi[0] = wi[1] = 0;
+	wi[2] = -1;
+	expect(stdfit_measurement_from_samples(&measurement, 1, wi, wo, values, NULL, &error), STDFIT_NO_DATA,
+	       "horizon");
+	expect(stdfit_measurement_from_samples(&measurement, 0, wi, wo, values, NULL, &error), STDFIT_DOMAIN,
+	       "at least 1");
+	expect(stdfit_measurement_from_samples(&measurement, 1, NULL, wo, values, NULL, &error), STDFIT_DOMAIN, "NULL");
+}
+
 static void the_flag_cancels(void **state)
 {
 	struct stdfit_options options = ggx_options();
@@ -357,6 +406,7 @@ int main(void)
 		cmocka_unit_test(energy_and_kurtosis_have_their_known_values),
 		cmocka_unit_test(a_fit_on_a_small_stack_recovers_its_parameters),
 		cmocka_unit_test(a_child_can_fit_on_one_thread),
+		cmocka_unit_test(samples_are_fitted_with_axes),
 		cmocka_unit_test(the_flag_cancels),
 		cmocka_unit_test(an_algorithm_goes_by_its_name),
 	};

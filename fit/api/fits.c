@@ -32,7 +32,8 @@ struct stdfit_options stdfit_options_default(void)
 
 const char *stdfit_parameter_name(unsigned bit)
 {
-	static const char *const name[] = {"sigma", "gamma", "n", "kd_r", "kd_g", "kd_b", "ks_r", "ks_g", "ks_b", "k"};
+	static const char *const name[] = {"sigma", "gamma", "n",    "kd_r", "kd_g", "kd_b",
+					   "ks_r",  "ks_g",  "ks_b", "k",    "angle"};
 
 	for (unsigned i = 0; i < sizeof name / sizeof *name; i++)
 		if (bit == 1u << i)
@@ -123,6 +124,7 @@ static enum stdfit_status read_options(const struct stdfit_options *options, str
 	inner->diffuse = options->diffuse;
 	inner->specular = options->specular;
 	inner->gray = options->gray;
+	inner->anisotropic = options->anisotropic;
 	inner->starts = options->starts;
 	inner->threads = options->threads;
 	inner->seed = options->seed;
@@ -183,7 +185,11 @@ static enum status hand_over(struct fit_result *from, struct stdfit_result *to)
 
 	*to = (struct stdfit_result){.ndf = ndf_name(class),
 				     .model = {.gaf = gaf_name(m->gaf), .fresnel = fresnel_name(m->fresnel)},
-				     .sigma = ndf_is_tabulated(class) ? NAN : m->ndf.sigma_x,
+				     .sigma = ndf_is_tabulated(class) ? NAN : sqrt(m->ndf.sigma_x * m->ndf.sigma_y),
+				     .sigma_x = ndf_is_tabulated(class) ? NAN : m->ndf.sigma_x,
+				     .sigma_y = ndf_is_tabulated(class) ? NAN : m->ndf.sigma_y,
+				     .angle = m->ndf.angle,
+				     .error_isotropic = from->error_isotropic,
 				     .gamma = ndf_has_gamma(class) ? m->ndf.gamma : NAN,
 				     .error = from->error,
 				     .lower_bound = from->lower_bound,

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "data_readers/entry_list.h"
 #include "data_readers/measurement_read.h"
 #include "data_readers/merl.h"
 #include "fit/api/api.h"
@@ -90,6 +91,56 @@ enum stdfit_status stdfit_measurement_from_values(stdfit_measurement **measureme
 
 	for (size_t at = 0; at < plane; at++)
 		set_entry(grid, at, values, plane);
+	return give_up(measurement, status);
+}
+
+static enum status add_samples(struct entry_list *list, size_t n, const double *wi, const double *wo,
+			       const double *values, const double *solid_angles)
+{
+	enum status status = STATUS_OK;
+
+	for (size_t i = 0; i < n && status == STATUS_OK; i++) {
+		const double *v = values + 3 * i;
+		const struct entry entry = {.wi = vec3_unit(api_vec(wi + 3 * i)),
+					    .wo = vec3_unit(api_vec(wo + 3 * i)),
+					    .value = {v[0], v[1], v[2]},
+					    .solid_angle = solid_angles ? solid_angles[i] : 0};
+
+		status = entry_list_add(list, &entry, false);
+	}
+	return status;
+}
+
+enum stdfit_status stdfit_measurement_from_samples(stdfit_measurement **measurement, size_t n, const double *wi,
+						   const double *wo, const double *values, const double *solid_angles,
+						   struct stdfit_error *error)
+{
+	struct entry_list list = {.from_grid = solid_angles, .n_channels = MERL_CHANNELS};
+	struct error why = {""};
+	enum stdfit_status status = allocate(measurement, error);
+
+	if (status != STDFIT_OK)
+		return status;
+	if (n < 1)
+		status = api_fail(error, STATUS_DOMAIN, "expected n of at least 1");
+	if (status == STDFIT_OK)
+		status = api_directions("wi", n, wi, error);
+	if (status == STDFIT_OK)
+		status = api_directions("wo", n, wo, error);
+	if (status == STDFIT_OK && !values)
+		status = api_fail(error, STATUS_DOMAIN, "values is NULL");
+	for (size_t i = 0; i < n && status == STDFIT_OK && solid_angles; i++)
+		if (!(solid_angles[i] >= 0 && solid_angles[i] <= FLT_MAX))
+			status = api_fail(error, STATUS_DOMAIN, "solid angle number %zu is %g: expected 0 or more", i,
+					  solid_angles[i]);
+	if (status == STDFIT_OK) {
+		enum status end = add_samples(&list, n, wi, wo, values, solid_angles);
+
+		if (end == STATUS_OK)
+			end = entry_list_finish(&list, &(*measurement)->grid, &why);
+		status = api_end(error, end, &why);
+	}
+	entry_list_free(&list);
 	return give_up(measurement, status);
 }
 
