@@ -108,7 +108,7 @@ static void write_rgb(FILE *file, const double rgb[3], double scale)
 {
 	char text[CSV_NUMBER_SIZE];
 	for (int c = 0; c < 3; c++)
-		fprintf(file, "%s%s", c ? ", " : "", csv_number(text, fmin(rgb[c] * scale, 1)));
+		fprintf(file, "%s%s", c ? ", " : "", csv_number(text, rgb[c] * scale));
 }
 
 /* ---- The scene: a unit sphere, seen from z, lit from the upper left, so that a viewer shows something ---- */
@@ -211,10 +211,18 @@ static void write_scene(FILE *file)
 	fprintf(file, "\"}]\n}\n");
 }
 
+/* Importers take no ior of a metal's F0. What is above this goes into the colour, which may exceed 1: the same F0. */
+static const double ior_max = 2.5;
+
+static double reflectance(double n)
+{
+	return (n - 1) / (n + 1) * ((n - 1) / (n + 1));
+}
+
 static enum status gltf_write(const struct export *export, FILE *file, struct error *error)
 {
 	const struct cook_torrance *model = &export->model;
-	const double s = export_max(model->ks);
+	const double s = export_max(model->ks), ior = fmin(model->n, ior_max);
 	char name[EXPORT_NAME], text[CSV_NUMBER_SIZE];
 	(void)error;
 	export_identifier(export, name);
@@ -233,12 +241,13 @@ static enum status gltf_write(const struct export *export, FILE *file, struct er
 	fprintf(file, ", 1],\n        \"metallicFactor\": 0,\n        \"roughnessFactor\": %s\n      },\n",
 		csv_number(text, s > 0 ? sqrt(model->ndf.sigma_x) : 1));
 	fprintf(file, "      \"extensions\": {\n        \"KHR_materials_ior\": {\"ior\": %s},\n",
-		csv_number(text, s > 0 ? model->n : 1.5));
+		csv_number(text, s > 0 ? ior : 1.5));
 	fprintf(file,
 		"        \"KHR_materials_specular\": {\n          \"specularFactor\": %s,\n          "
 		"\"specularColorFactor\": [",
 		csv_number(text, s));
-	write_rgb(file, model->ks, s > 0 ? 1 / s : 0);
+	const double scale = model->n > ior_max ? reflectance(model->n) / reflectance(ior_max) : 1;
+	write_rgb(file, model->ks, s > 0 ? scale / s : 0);
 	fprintf(file, "]\n        }\n      }\n    }\n  ],\n");
 	write_scene(file);
 	return STATUS_OK;
