@@ -263,7 +263,7 @@ check_names() {
 # Lines `COMMAND --OPTION`, of the program and of the first two columns of the tables in docs/commands.md.
 check_options() {
 	stdfit --help | sed -n 's/^  stdfit \[*\([a-z]*\)]* .*/\1/p' | while read -r command; do
-		stdfit "$command" --help | sed -n 's/^ *\(-[a-zA-Z], \)*\(--[a-z][a-z-]*\).*/\2/p' | sed "s/^/$command /"
+		stdfit "$command" --help | sed -n 's/^ \{2,6\}\(-[a-zA-Z], \)*\(--[a-z][a-z-]*\).*/\2/p' | sed "s/^/$command /"
 	done | sort -u >"$work/options.program"
 	awk -F ' *[|] *' '/^[|] `-/ {
 		gsub(/\\[|]/, "/")

@@ -174,21 +174,33 @@ static enum status result_of(const struct run *run, const struct ndf_class *clas
 /* Nested distributions: at these values of gamma a class is a simpler one, of the same sigma. */
 enum { NESTED = 2 };
 static const char *const nested_name[NESTED] = {"ggx", "beckmann"};
-static const struct nesting {
-	const char *class;
+static const double nested_gamma[NESTED] = {2, INFINITY};
+struct nesting {
+	bool any;
 	double gamma[NESTED]; /* NaN: not within the class */
-} nestings[] = {{"std", {2, INFINITY}}, {"hyper-cauchy", {2, NAN}}, {"gtr", {2, NAN}}};
+};
+
+static double gamma_of_nested(const struct ndf_class *class, int n)
+{
+	struct ndf ndf, plain;
+	const bool within = ndf_has_gamma(class) && ndf_init(&ndf, class, 1, 1, nested_gamma[n]) == STATUS_OK &&
+			    ndf_plain(&ndf, &plain) && plain.class == ndf_find(nested_name[n]) && plain.sigma_x == 1;
+
+	return within ? nested_gamma[n] : NAN;
+}
 
 /* The other algorithms go without. So do the other forms of Lambda: GGX and Beckmann have theirs. */
-static const struct nesting *nesting_of(const struct run *run, const struct ndf_class *class)
+static struct nesting nesting_of(const struct run *run, const struct ndf_class *class)
 {
 	const struct fit_options *o = run->options;
+	const bool wanted = isnan(o->gamma) && o->specular && !o->algorithm && o->lambda == LAMBDA_EXACT;
+	struct nesting nesting = {.any = false};
 
-	for (size_t n = 0; n < sizeof nestings / sizeof *nestings; n++)
-		if (class == ndf_find(nestings[n].class) && isnan(o->gamma) && o->specular && !o->algorithm &&
-		    o->lambda == LAMBDA_EXACT)
-			return &nestings[n];
-	return NULL;
+	for (int n = 0; n < NESTED; n++) {
+		nesting.gamma[n] = wanted ? gamma_of_nested(class, n) : NAN;
+		nesting.any |= !isnan(nesting.gamma[n]);
+	}
+	return nesting;
 }
 
 /* Fits that others build on, made when first wanted and shared by all that want them: those of the nested models, and
@@ -478,7 +490,7 @@ void fit_result_free(struct fit_result *result)
 static enum status fit_anisotropic(const struct run *run, const struct ndf_class *class, struct nested *nested,
 				   struct fit_result *r)
 {
-	const struct nesting *nesting = nesting_of(run, class);
+	const struct nesting nesting = nesting_of(run, class);
 	struct fit_options isotropic_options = *run->options, options = *run->options;
 	struct fit_result isotropic, inner[NESTED];
 	struct run own = *run;
@@ -493,11 +505,11 @@ static enum status fit_anisotropic(const struct run *run, const struct ndf_class
 	enum status status = fit_class(&own, class, run->isotropic, &isotropic);
 
 	for (int n = 0; n < NESTED && status == STATUS_OK; n++) {
-		if (!nesting || isnan(nesting->gamma[n]))
+		if (isnan(nesting.gamma[n]))
 			continue;
 		status = fit_class(run, ndf_find(nested_name[n]), nested, &inner[n]);
 		start[count] = shape_of(&inner[n].model);
-		start[count++].gamma = nesting->gamma[n];
+		start[count++].gamma = nesting.gamma[n];
 	}
 	if (status != STATUS_OK)
 		return status;
@@ -520,8 +532,8 @@ static enum status fit_anisotropic(const struct run *run, const struct ndf_class
 	r->undetermined = isotropic.undetermined;
 	status = take_nested(run, r, class, &isotropic, isotropic.model.ndf.gamma);
 	for (int n = 0; n < NESTED && status == STATUS_OK; n++)
-		if (nesting && !isnan(nesting->gamma[n]))
-			status = take_nested(run, r, class, &inner[n], nesting->gamma[n]);
+		if (!isnan(nesting.gamma[n]))
+			status = take_nested(run, r, class, &inner[n], nesting.gamma[n]);
 	r->error_isotropic = isotropic.error;
 	return status;
 }
@@ -529,14 +541,14 @@ static enum status fit_anisotropic(const struct run *run, const struct ndf_class
 static enum status fit_anew(const struct run *run, const struct ndf_class *class, struct nested *nested,
 			    struct fit_result *r)
 {
-	const struct nesting *nesting = nesting_of(run, class);
+	const struct nesting nesting = nesting_of(run, class);
 
 	if (ndf_is_tabulated(class))
 		return fit_free_form(run, nested, r);
 	if (run->options->anisotropic && isnan(run->options->sigma_y))
 		return fit_anisotropic(run, class, nested, r);
-	if (nesting)
-		return fit_with_nested(run, class, nesting, nested, r);
+	if (nesting.any)
+		return fit_with_nested(run, class, &nesting, nested, r);
 	if (has_sparse_lambda(run, class))
 		return fit_each_gamma(run, class, r);
 	for (int n = 0; n < NESTED; n++)
@@ -568,11 +580,11 @@ static enum status fit_class(const struct run *run, const struct ndf_class *clas
 static unsigned gamma_settled(const struct run *run, const struct ndf_class *class, const struct nested *nested,
 			      const struct fit_result *r)
 {
-	const struct nesting *nesting = nesting_of(run, class);
+	const struct nesting nesting = nesting_of(run, class);
 	const double limit = undetermined_limit(r->error);
 
-	for (int n = 0; nesting && n < NESTED; n++)
-		if (!isnan(nesting->gamma[n]) && nested->result[n].error > limit)
+	for (int n = 0; n < NESTED; n++)
+		if (!isnan(nesting.gamma[n]) && nested->result[n].error > limit)
 			return BOUND_GAMMA;
 	return 0;
 }
