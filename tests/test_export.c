@@ -68,7 +68,8 @@ static void expect_stated(const char *words, double error)
 	check_rel(strtod(at + strlen(words), NULL), error, 1e-4, words);
 }
 
-static double error_within(double max_theta, const struct cook_torrance *truth, const struct cook_torrance *model)
+static double error_weighted(double max_theta, enum weight weight, const struct cook_torrance *truth,
+			     const struct cook_torrance *model)
 {
 	struct fit_options options = fit_options_default();
 	struct measurement measurement;
@@ -79,7 +80,12 @@ static double error_within(double max_theta, const struct cook_torrance *truth, 
 	assert_int_equal(model_table(truth, BINS_NODE, 180, max_theta, 1, &measurement), STATUS_OK);
 	assert_int_equal(fit_eval(&measurement, model, &options, &metrics, &error), STATUS_OK);
 	measurement_free(&measurement);
-	return metrics.error[WEIGHT_NONE];
+	return metrics.error[weight];
+}
+
+static double error_within(double max_theta, const struct cook_torrance *truth, const struct cook_torrance *model)
+{
+	return error_weighted(max_theta, WEIGHT_NONE, truth, model);
 }
 
 static double error_on(const struct cook_torrance *truth, const struct cook_torrance *model)
@@ -221,6 +227,8 @@ static void mitsuba_gets_a_substitute(void **state)
 	const struct cook_torrance got = read_mitsuba();
 	assert_string_equal(ndf_name(got.ndf.class), "ggx");
 	expect_stated("of what stands here ", error_on(&truth, &got));
+	expect_stated("; weight cosine: 0, ", error_weighted(12, WEIGHT_COSINE, &truth, &got));
+	expect_stated("; weight solid-angle: 0, ", error_weighted(12, WEIGHT_SOLID_ANGLE, &truth, &got));
 	/* It is a fit: dropping gamma alone does worse. */
 	struct cook_torrance dropped = given("ggx", 0.2, 2, 1.5);
 	assert_true(error_on(&truth, &got) < 0.8 * error_on(&truth, &dropped));
