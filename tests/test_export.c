@@ -68,7 +68,8 @@ static void expect_stated(const char *words, double error)
 	check_rel(strtod(at + strlen(words), NULL), error, 1e-4, words);
 }
 
-static double error_within(double max_theta, const struct cook_torrance *truth, const struct cook_torrance *model)
+static double error_weighted(double max_theta, enum weight weight, const struct cook_torrance *truth,
+			     const struct cook_torrance *model)
 {
 	struct fit_options options = fit_options_default();
 	struct measurement measurement;
@@ -79,7 +80,12 @@ static double error_within(double max_theta, const struct cook_torrance *truth, 
 	assert_int_equal(model_table(truth, BINS_NODE, 180, max_theta, 1, &measurement), STATUS_OK);
 	assert_int_equal(fit_eval(&measurement, model, &options, &metrics, &error), STATUS_OK);
 	measurement_free(&measurement);
-	return metrics.error[WEIGHT_NONE];
+	return metrics.error[weight];
+}
+
+static double error_within(double max_theta, const struct cook_torrance *truth, const struct cook_torrance *model)
+{
+	return error_weighted(max_theta, WEIGHT_NONE, truth, model);
 }
 
 static double error_on(const struct cook_torrance *truth, const struct cook_torrance *model)
@@ -221,6 +227,8 @@ static void mitsuba_gets_a_substitute(void **state)
 	const struct cook_torrance got = read_mitsuba();
 	assert_string_equal(ndf_name(got.ndf.class), "ggx");
 	expect_stated("of what stands here ", error_on(&truth, &got));
+	expect_stated("; weight cosine: 0, ", error_weighted(12, WEIGHT_COSINE, &truth, &got));
+	expect_stated("; weight solid-angle: 0, ", error_weighted(12, WEIGHT_SOLID_ANGLE, &truth, &got));
 	/* It is a fit: dropping gamma alone does worse. */
 	struct cook_torrance dropped = given("ggx", 0.2, 2, 1.5);
 	assert_true(error_on(&truth, &got) < 0.8 * error_on(&truth, &dropped));
@@ -477,6 +485,15 @@ static void gltf_tells_its_error(void **state)
 	export_it(SMALL " --format gltf " LOBE " --sigma 0.2 --gamma 1.7");
 	expect_out("no NDF std of gamma 1.7, no uncorrelated G, no Fresnel term dielectric; ggx (gamma 2) was fitted");
 	g = read_gltf();
+	expect_stated("error of what a glTF viewer shows ", gltf_error(&g, &truth));
+	/* An ior that importers would not take: its F0 is in the colour. */
+	truth = given("ggx", 0.09, 2, 40);
+	truth.gaf = GAF_CORRELATED;
+	truth.fresnel = FRESNEL_SCHLICK;
+	export_it(SMALL " --format gltf " LOBE " --ndf ggx --sigma 0.09 --ior 40 --gaf correlated --fresnel schlick");
+	g = read_gltf();
+	check_rel(g.ior, 2.5, 1e-15, "ior");
+	assert_true(g.color[2] > 1);
 	expect_stated("error of what a glTF viewer shows ", gltf_error(&g, &truth));
 	export_it(SMALL " --format gltf " LOBE " --ndf ggx --sigma 2.5 --gaf correlated --fresnel schlick");
 	g = read_gltf();
@@ -797,9 +814,91 @@ static void refusals_are_one_line(void **state)
 	assert_string_equal(last.out, "");
 }
 
+/* The bytes of the one buffer, decoded. */
+static unsigned char *buffer_of(const json_t *gltf, size_t *size)
+{
+	static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+	const json_t *buffer = json_array_get(json_object_get(gltf, "buffers"), 0);
+	const char *at = strchr(json_string_value(json_object_get(buffer, "uri")), ',') + 1;
+	unsigned char *bytes = malloc(strlen(at));
+	unsigned bits = 0;
+
+	assert_non_null(bytes);
+	*size = 0;
+	for (int n = 1; *at; at++, n++) {
+		assert_non_null(strchr(digits, *at));
+		bits = bits << 6 | (unsigned)(strchr(digits, *at) - digits);
+		for (int shift = 16; n % 4 == 0 && shift >= 0; shift -= 8)
+			bytes[(*size)++] = (unsigned char)(bits >> shift & 255);
+	}
+	assert_int_equal(*size, json_integer_value(json_object_get(buffer, "byteLength")));
+	return bytes;
+}
+
+/* The sphere that a viewer shows: a unit sphere, closed, its triangles seen from outside. */
+static void gltf_has_a_sphere(void **state)
+{
+	json_error_t error;
+	size_t size;
+	double volume = 0;
+
+	(void)state;
+	export_it(SMALL " --format gltf " LOBE " --ndf ggx --sigma 0.09 --gaf correlated --fresnel schlick");
+	json_t *gltf = json_loads(last.out, JSON_REJECT_DUPLICATES, &error);
+	assert_non_null(gltf);
+	unsigned char *bytes = buffer_of(gltf, &size);
+	const json_t *accessors = json_object_get(gltf, "accessors");
+	const size_t n = (size_t)member_number(json_array_get(accessors, 0), "count");
+	const size_t vertices = (size_t)member_number(json_array_get(accessors, 1), "count");
+
+	assert_int_equal(size, 2 * n + 12 * vertices);
+	for (size_t t = 0; t < n; t += 3) {
+		struct vec3 v[3];
+
+		for (size_t i = 0; i < 3; i++) {
+			uint16_t index;
+			float at[3];
+
+			memcpy(&index, bytes + 2 * (t + i), 2);
+			assert_true(index < vertices);
+			memcpy(at, bytes + 2 * n + (size_t)12 * index, 12);
+			v[i] = (struct vec3){(double)at[0], (double)at[1], (double)at[2]};
+			check_abs(vec3_length(v[i]), 1, 1e-6, "radius");
+		}
+		const struct vec3 a = vec3_sub(v[1], v[0]), b = vec3_sub(v[2], v[0]);
+		const struct vec3 across = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+
+		assert_true(vec3_dot(across, v[0]) > 0);
+		volume += vec3_dot(across, v[0]) / 6;
+	}
+	check_rel(volume, 4 * M_PI / 3, 0.02, "volume");
+	assert_int_equal(json_array_size(json_object_get(gltf, "nodes")), 3);
+	assert_int_equal(json_array_size(json_object_get(gltf, "cameras")), 1);
+	json_decref(gltf);
+	free(bytes);
+}
+
+/* Where node finds gltf-validator of npm (NODE_PATH): no error, warning, information or hint. */
+static void gltf_validator_takes_it(void **state)
+{
+	(void)state;
+	shell("node -e 'require(\"gltf-validator\")'");
+	if (last.code != 0)
+		skip();
+	export_it(SMALL " --format gltf " LOBE
+			" --ndf ggx --sigma 0.09 --ior 40 --gaf correlated --fresnel schlick -o v.gltf");
+	shell("node -e 'require(\"gltf-validator\").validateBytes(new "
+	      "Uint8Array(require(\"fs\").readFileSync(\"v.gltf\")))"
+	      ".then(r => console.log(JSON.stringify(r.issues.messages)))'");
+	expect_code(0);
+	assert_string_equal(last.out, "[]\n");
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(gltf_has_a_sphere),
+		cmocka_unit_test(gltf_validator_takes_it),
 		cmocka_unit_test(mitsuba_says_what_it_can),
 		cmocka_unit_test(mitsuba_gets_a_substitute),
 		cmocka_unit_test(mitsuba_blends_within_one),

@@ -273,7 +273,7 @@ struct options options_default(enum command command)
 		.environment = "studio",
 		.size = 256,
 		.accuracy = 0.2,
-		.file_size = 16e6,
+		.file_size = 32e6,
 		.pixel_samples = 64,
 	};
 	if (command == COMMAND_EVAL || command == COMMAND_SYNTH) {

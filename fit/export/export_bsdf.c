@@ -132,7 +132,7 @@ static struct rgl_layout layout_of(const struct export *export, size_t side, con
 }
 
 /* Half vectors along each side; theta_i are half as many, since more of them would gain less. */
-static const size_t nodes[] = {16, 24, 32, 40, 48, 64, 80, 96, 128, 160, 192, 256};
+static const size_t nodes[] = {16, 24, 32, 40, 48, 64, 80, 96, 112, 128, 160, 192, 256};
 
 /* Sets nodes of the export; *found is the error of what has as many. */
 static enum status refine(struct export *export, double (*value)[MERL_CHANNELS], double *found, struct error *error)
@@ -166,8 +166,9 @@ static enum status bsdf_prepare(struct export *export, struct error *error)
 	free(value);
 	snprintf(export->why, sizeof export->why,
 		 "a table of the model at %zu theta_i and %zu x %zu half vectors; error against the model %.2g %% (L1, "
-		 "weight cosine)",
-		 export->nodes / 2, export->nodes, export->nodes, 100 * found);
+		 "weight cosine)%s",
+		 export->nodes / 2, export->nodes, export->nodes, 100 * found,
+		 100 * found > export->source.accuracy ? ", the least of this size" : "");
 	return status;
 }
 

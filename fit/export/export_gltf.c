@@ -108,13 +108,121 @@ static void write_rgb(FILE *file, const double rgb[3], double scale)
 {
 	char text[CSV_NUMBER_SIZE];
 	for (int c = 0; c < 3; c++)
-		fprintf(file, "%s%s", c ? ", " : "", csv_number(text, fmin(rgb[c] * scale, 1)));
+		fprintf(file, "%s%s", c ? ", " : "", csv_number(text, rgb[c] * scale));
+}
+
+/* ---- The scene: a unit sphere, seen from z, lit from the upper left, so that a viewer shows something ---- */
+
+enum {
+	MERIDIANS = 48,
+	PARALLELS = 24,
+	VERTICES = (MERIDIANS + 1) * (PARALLELS + 1),
+	INDICES = MERIDIANS * (PARALLELS - 1) * 6,
+	INDEX_BYTES = INDICES * 2,
+	VERTEX_BYTES = VERTICES * 3 * 4
+};
+
+/* Base64, of bytes that come one at a time. */
+struct base64 {
+	FILE *file;
+	unsigned bits;
+	int n;
+};
+
+static void put_byte(struct base64 *to, unsigned byte)
+{
+	static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+	to->bits = (to->bits << 8 | byte) & 0xffffff;
+	if (++to->n % 3 == 0)
+		for (int shift = 18; shift >= 0; shift -= 6)
+			fputc(digit[to->bits >> shift & 63], to->file);
+}
+
+static void put_index(struct base64 *to, int index)
+{
+	put_byte(to, (unsigned)index & 255);
+	put_byte(to, (unsigned)index >> 8);
+}
+
+static void put_float(struct base64 *to, double value)
+{
+	const float single = (float)value;
+	unsigned bits;
+
+	memcpy(&bits, &single, sizeof bits);
+	for (int shift = 0; shift < 32; shift += 8)
+		put_byte(to, bits >> shift & 255);
+}
+
+/* Indices and positions, which are the normals too; both are multiples of 3 bytes long. Poles are along y; at them one of
+ * the two triangles has no area and is left out. */
+_Static_assert(INDEX_BYTES % 12 == 0 && VERTEX_BYTES % 3 == 0, "base64 without padding, aligned floats");
+static void write_sphere(FILE *file)
+{
+	struct base64 to = {file, 0, 0};
+
+	for (int p = 0; p < PARALLELS; p++)
+		for (int m = 0; m < MERIDIANS; m++) {
+			const int a = p * (MERIDIANS + 1) + m, below = a + MERIDIANS + 1;
+			const int triangles[2][3] = {{a, below, a + 1}, {a + 1, below, below + 1}};
+
+			for (int t = p == 0; t < (p == PARALLELS - 1 ? 1 : 2); t++)
+				for (int i = 0; i < 3; i++)
+					put_index(&to, triangles[t][i]);
+		}
+	for (int n = 0; n < VERTICES; n++) {
+		const double theta = M_PI * (n / (MERIDIANS + 1)) / PARALLELS;
+		const double phi = 2 * M_PI * (n % (MERIDIANS + 1)) / MERIDIANS;
+
+		put_float(&to, sin(theta) * sin(phi));
+		put_float(&to, cos(theta));
+		put_float(&to, sin(theta) * cos(phi));
+	}
+}
+
+static void write_scene(FILE *file)
+{
+	fprintf(file,
+		"  \"scene\": 0,\n  \"scenes\": [{\"nodes\": [0, 1, 2]}],\n  \"nodes\": [\n"
+		"    {\"name\": \"sphere\", \"mesh\": 0},\n"
+		"    {\"name\": \"camera\", \"camera\": 0, \"translation\": [0, 0, 4]},\n"
+		"    {\"name\": \"light\", \"rotation\": [-0.3535533905932738, -0.3535533905932738, "
+		"-0.1464466094067262, 0.8535533905932737],\n"
+		"     \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}}\n  ],\n"
+		"  \"cameras\": [{\"type\": \"perspective\", \"perspective\": {\"yfov\": 0.6, \"aspectRatio\": 1, "
+		"\"znear\": 0.1, \"zfar\": 100}}],\n"
+		"  \"extensions\": {\"KHR_lights_punctual\": {\"lights\": [{\"type\": \"directional\", "
+		"\"intensity\": 3}]}},\n"
+		"  \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 1, \"NORMAL\": 1}, \"indices\": 0, "
+		"\"material\": 0}]}],\n");
+	fprintf(file,
+		"  \"accessors\": [\n"
+		"    {\"bufferView\": 0, \"componentType\": 5123, \"count\": %d, \"type\": \"SCALAR\"},\n"
+		"    {\"bufferView\": 1, \"componentType\": 5126, \"count\": %d, \"type\": \"VEC3\", \"min\": [-1, -1, "
+		"-1], "
+		"\"max\": [1, 1, 1]}\n  ],\n"
+		"  \"bufferViews\": [\n"
+		"    {\"buffer\": 0, \"byteLength\": %d, \"target\": 34963},\n"
+		"    {\"buffer\": 0, \"byteOffset\": %d, \"byteLength\": %d, \"target\": 34962}\n  ],\n"
+		"  \"buffers\": [{\"byteLength\": %d, \"uri\": \"data:application/octet-stream;base64,",
+		INDICES, VERTICES, INDEX_BYTES, INDEX_BYTES, VERTEX_BYTES, INDEX_BYTES + VERTEX_BYTES);
+	write_sphere(file);
+	fprintf(file, "\"}]\n}\n");
+}
+
+/* Importers take no ior of a metal's F0. What is above this goes into the colour, which may exceed 1: the same F0. */
+static const double ior_max = 2.5;
+
+static double reflectance(double n)
+{
+	return (n - 1) / (n + 1) * ((n - 1) / (n + 1));
 }
 
 static enum status gltf_write(const struct export *export, FILE *file, struct error *error)
 {
 	const struct cook_torrance *model = &export->model;
-	const double s = export_max(model->ks);
+	const double s = export_max(model->ks), ior = fmin(model->n, ior_max);
 	char name[EXPORT_NAME], text[CSV_NUMBER_SIZE];
 	(void)error;
 	export_identifier(export, name);
@@ -125,7 +233,7 @@ static enum status gltf_write(const struct export *export, FILE *file, struct er
 	export_comment(export, file, "        \"", "\",");
 	fprintf(file,
 		"        \"\"\n      ]\n    }\n  },\n"
-		"  \"extensionsUsed\": [\"KHR_materials_ior\", \"KHR_materials_specular\"],\n"
+		"  \"extensionsUsed\": [\"KHR_lights_punctual\", \"KHR_materials_ior\", \"KHR_materials_specular\"],\n"
 		"  \"materials\": [\n    {\n      \"name\": \"%s\",\n      \"pbrMetallicRoughness\": {\n"
 		"        \"baseColorFactor\": [",
 		name);
@@ -133,13 +241,15 @@ static enum status gltf_write(const struct export *export, FILE *file, struct er
 	fprintf(file, ", 1],\n        \"metallicFactor\": 0,\n        \"roughnessFactor\": %s\n      },\n",
 		csv_number(text, s > 0 ? sqrt(model->ndf.sigma_x) : 1));
 	fprintf(file, "      \"extensions\": {\n        \"KHR_materials_ior\": {\"ior\": %s},\n",
-		csv_number(text, s > 0 ? model->n : 1.5));
+		csv_number(text, s > 0 ? ior : 1.5));
 	fprintf(file,
 		"        \"KHR_materials_specular\": {\n          \"specularFactor\": %s,\n          "
 		"\"specularColorFactor\": [",
 		csv_number(text, s));
-	write_rgb(file, model->ks, s > 0 ? 1 / s : 0);
-	fprintf(file, "]\n        }\n      }\n    }\n  ]\n}\n");
+	const double scale = model->n > ior_max ? reflectance(model->n) / reflectance(ior_max) : 1;
+	write_rgb(file, model->ks, s > 0 ? scale / s : 0);
+	fprintf(file, "]\n        }\n      }\n    }\n  ],\n");
+	write_scene(file);
 	return STATUS_OK;
 }
 

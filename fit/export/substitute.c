@@ -225,16 +225,6 @@ static enum status fit_substitute(struct export *export, const struct target *ta
 	return status;
 }
 
-static enum status error_of(const struct export *export, const struct measurement *measurement,
-			    const struct cook_torrance *model, double *value, struct error *error)
-{
-	struct fit_metrics metrics;
-	const enum status status = fit_eval(measurement, model, export->source.fit, &metrics, error);
-	if (status == STATUS_OK)
-		*value = metrics.error[export->source.fit->criterion.weight];
-	return status;
-}
-
 /* What the errors are against, for people. */
 static void name_data(const struct export_source *source, char name[TEXT_QUOTE_SIZE])
 {
@@ -248,17 +238,27 @@ static void name_data(const struct export_source *source, char name[TEXT_QUOTE_S
 static enum status report_cost(struct export *export, const struct measurement *measurement, struct error *error)
 {
 	const struct fit_options *fit = export->source.fit;
-	double before, after;
+	const enum weight fitted = fit->criterion.weight;
+	struct fit_metrics before, after;
 	char name[TEXT_QUOTE_SIZE];
-	enum status status = error_of(export, measurement, export->source.model, &before, error);
+	enum status status = fit_eval(measurement, export->source.model, fit, &before, error);
 	if (status == STATUS_OK)
-		status = error_of(export, measurement, &export->model, &after, error);
+		status = fit_eval(measurement, &export->model, fit, &after, error);
 	if (status != STATUS_OK)
 		return status;
 	name_data(&export->source, name);
 	snprintf(export->cost, sizeof export->cost,
 		 "error of the model %.5g, of what stands here %.5g (weight %s, against %s)",
-		 export->source.measurement ? before : 0.0, after, weight_name(fit->criterion.weight), name);
+		 export->source.measurement ? before.error[fitted] : 0.0, after.error[fitted], weight_name(fitted),
+		 name);
+	for (enum weight weight = 0; weight < WEIGHT_COUNT; weight++) {
+		const size_t used = strlen(export->cost);
+
+		if (weight != fitted)
+			snprintf(export->cost + used, sizeof export->cost - used, "; weight %s: %.5g, %.5g",
+				 weight_name(weight), export->source.measurement ? before.error[weight] : 0.0,
+				 after.error[weight]);
+	}
 	return STATUS_OK;
 }
 
