@@ -236,6 +236,7 @@ static enum status read_spectra(const struct tensor_file *file, struct rgl *rgl,
 {
 	float *wavelength = NULL, *spectra = NULL;
 	size_t n = 0;
+	*grid = (struct grid){.value = NULL};
 	enum status status = read_axis(file, "wavelengths", 1, 1e6, &wavelength, &n, why);
 
 	if (status == STATUS_OK) {
@@ -282,7 +283,7 @@ static enum status read_fields(const struct tensor_file *file, struct rgl *rgl, 
 
 	if (status == STATUS_OK)
 		status = read_axis(file, "theta_i", 0, M_PI / 2 + slack, &rgl->theta_i, &rgl->n_theta, why);
-	if (status != STATUS_OK)
+	if (status != STATUS_OK || !rgl->phi_i)
 		return status;
 	const double repeats = is_isotropic(rgl) ? 1 : azimuth_repeats(rgl);
 	if (repeats != 1 && repeats != 2 && repeats != 4)

@@ -157,6 +157,8 @@ static enum status read_head(struct line_reader *lines, struct grid *grid, struc
 static enum status read_block(struct line_reader *lines, const struct grid *grid, double *value, struct error *why)
 {
 	const size_t n_radial = grid->axis[RADIAL].n;
+	if (n_radial == 0)
+		return line_error(lines, why, "expected ScatterRadial before the values");
 	for (size_t at = 0; at <= grid->n;) {
 		char *line;
 		size_t n;
@@ -208,6 +210,8 @@ static void find_edges(struct grid *grid)
 	const double most[AXES] = {2 * M_PI, M_PI_2, grid->half ? M_PI : 2 * M_PI, M_PI};
 	for (int a = 0; a < AXES; a++) {
 		struct axis *axis = &grid->axis[a];
+		if (!axis->angle)
+			continue;
 		const double shift = a == ROTATION || a == AZIMUTH ? fmin(0, axis->angle[0]) : 0;
 		solid_angle_edges(axis->angle, axis->n, shift, shift + most[a], axis->edge);
 	}

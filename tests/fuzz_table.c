@@ -223,8 +223,8 @@ static void rewrite(struct store *store)
 		char *const *row = store->old.row[i];
 		const struct result_source source = {
 			.path = row[RESULT_PATH], .input = row[RESULT_INPUT], .options = row[RESULT_OPTIONS]};
-		PROMISE(result_failed(row) || strcmp(row[RESULT_VERSION], STDFIT_VERSION) ||
-			store->doubtful[i] || store_has(store, &source, row[RESULT_NDF]));
+		PROMISE(result_failed(row) || strcmp(row[RESULT_VERSION], STDFIT_VERSION) || store->doubtful[i] ||
+			store_has(store, &source, row[RESULT_NDF]));
 	}
 	if (store->old.n_rows) {
 		char *const *row = store->old.row[0];

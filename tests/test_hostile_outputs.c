@@ -225,7 +225,8 @@ static void streams_that_take_nothing_are_reported(void **state)
 	shell("cmp there.pfm taken.pfm");
 	expect_code(0);
 	/* The messages are lost, and nothing else. */
-	shell(": >empty.binary; \"$STDFIT\" render a.binary empty.binary " MODEL " " QUICK " -o silent.pfm >&- 2>&- <&-");
+	shell(": >empty.binary; \"$STDFIT\" render a.binary empty.binary " MODEL " " QUICK
+	      " -o silent.pfm >&- 2>&- <&-");
 	expect_code(1);
 	shell("PATH=/nowhere \"$STDFIT\" report fit.csv " QUICK " -o silent >&- 2>&- <&-");
 	expect_code(0);

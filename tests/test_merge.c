@@ -220,7 +220,8 @@ static void failed_writes_are_reported(void **state)
 	expect_error(1, "cannot write '/dev/full': No space left on device");
 	/* Through a symbolic link: the link stays, what it leads to is replaced, and kept beside that. */
 	shell("mkdir far; cp whole.csv far/real.csv; ln -s far/real.csv link.csv;"
-	      "\"$STDFIT\" merge p-1.csv p-2.csv -o link.csv && test -L link.csv && cmp far/real.csv~ whole.csv && ! cmp "
+	      "\"$STDFIT\" merge p-1.csv p-2.csv -o link.csv && test -L link.csv && cmp far/real.csv~ whole.csv && ! "
+	      "cmp "
 	      "-s "
 	      "far/real.csv whole.csv");
 	expect_code(0);

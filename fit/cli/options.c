@@ -183,8 +183,9 @@ static void print_filled(const char *text, int width)
 	size_t n = 0;
 	for (; *text; text++) {
 		const bool ends = *text == '\n' && (text[1] == '\0' || text[1] == '\n' || text[1] == ' ');
+		const char letter = *text;
 		if (n + 1 < sizeof line)
-			line[n++] = *text == '\n' ? ' ' : *text;
+			line[n++] = letter == '\n' ? (char)' ' : letter;
 		if (!ends)
 			continue;
 		line[n - 1] = '\0';

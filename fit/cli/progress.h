@@ -9,7 +9,7 @@
 struct progress {
 	bool shown; /* there is one: standard error is a terminal, and nobody asked for quiet */
 	size_t done, n;
-	size_t kept; /* of those done: no work, so they do not count in the time left */
+	size_t kept;         /* of those done: no work, so they do not count in the time left */
 	const char *unit;    /* what they are, "files" */
 	double start, drawn; /* seconds; when the batch began, when the line was last drawn */
 };

@@ -88,7 +88,6 @@ static void add_count(char *text, const char *what, size_t n)
 static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *measurement, const struct census *census,
 			   enum gamut gamut, const struct suspects *suspects)
 {
-	char explained[SUSPECTS_TEXT];
 	const bool zero = census->range[0].max <= 0 && census->range[1].max <= 0 && census->range[2].max <= 0;
 	snprintf(text, SUSPECTS_SIZE, "%s",
 		 !census->valid_above ? "no valid entry above the horizon"
@@ -99,10 +98,12 @@ static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *m
 	add_count(text, "non-finite", measurement->n_nonfinite);
 	if (gamut == GAMUT_CLIP)
 		add_count(text, "out of gamut, set to 0", measurement->n_out_of_gamut);
-	const size_t used = strlen(text);
-	if (suspects->found)
+	if (suspects->found) {
+		char explained[SUSPECTS_TEXT];
+		const size_t used = strlen(text);
 		snprintf(text + used, SUSPECTS_SIZE - used, "%s%s", used ? "; " : "",
 			 suspects_explain(suspects, explained));
+	}
 }
 
 /* Which entries of the file are not among those that count, and why. */
