@@ -254,7 +254,7 @@ static enum status read_spectra(const struct tensor_file *file, struct rgl *rgl,
 static enum status read_colours(const struct tensor_file *file, struct rgl *rgl, struct error *why)
 {
 	const size_t outer[] = {rgl->n_phi, rgl->n_theta, MERL_CHANNELS};
-	struct grid grid;
+	struct grid grid = {.value = NULL};
 	const enum status status = tensor_file_find(file, "rgb")
 					   ? read_grid(file, "rgb", 3, outer, &rgl->rgb_value, &grid, why)
 				   : tensor_file_find(file, "spectra")

@@ -183,9 +183,10 @@ static void print_filled(const char *text, int width)
 	size_t n = 0;
 	for (; *text; text++) {
 		const bool ends = *text == '\n' && (text[1] == '\0' || text[1] == '\n' || text[1] == ' ');
-		const char letter = *text;
 		if (n + 1 < sizeof line)
-			line[n++] = letter == '\n' ? (char)' ' : letter;
+			line[n++] = *text;
+		if (line[n - 1] == '\n')
+			line[n - 1] = ' ';
 		if (!ends)
 			continue;
 		line[n - 1] = '\0';
