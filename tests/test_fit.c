@@ -167,6 +167,41 @@ static void the_family_of_std_ends_where_std_does(void **state)
 	measurement_free(&measurement);
 }
 
+/* The certificate of a table that a model meets exactly: rounding must not rule the minimum out. E of kd = pi m is computed
+ * in long double. */
+static void constant_tables_end_at_their_value(void **state)
+{
+	static const float value[][3] = {
+		{1 / 1500.0F, 1.15F / 1500, 1.66F / 1500}, {0.47F, 0.3F, 0.21F}, {0.3F, 0.3F, 1e-5F}};
+	struct measurement measurement;
+
+	(void)state;
+	assert_int_equal(measurement_alloc(&measurement, 180), STATUS_OK);
+	for (size_t v = 0; v < sizeof value / sizeof *value; v++) {
+		for (size_t e = 0; e < measurement_count(&measurement); e += 13)
+			for (int c = 0; c < 3; c++)
+				measurement.value[c][e] = value[v][c];
+		for (int specular = 0; specular < 2; specular++) {
+			struct fit_options options = options_for("beckmann");
+			struct fit_result r;
+			long double difference = 0, sum = 0;
+
+			options.unbounded = true;
+			options.specular = specular;
+			run_fit(&measurement, &options, &r);
+			for (int c = 0; c < 3; c++) {
+				const double kd = M_PI * (double)value[v][c];
+
+				difference += fabsl((long double)value[v][c] - (long double)kd / acosl(-1));
+				sum += (long double)value[v][c];
+			}
+			check_between(r.error, 0, 2e-7, "E of a constant");
+			check_between(r.lower_bound, 0, (double)(difference / sum) + 1e-9, "lower bound");
+		}
+	}
+	measurement_free(&measurement);
+}
+
 static void can_be_cancelled(void **state)
 {
 	const struct cook_torrance truth = make_model("std", 0.2, 1.7, 1.5);
@@ -190,6 +225,7 @@ int main(void)
 		cmocka_unit_test(recovers_the_parameters),
 		cmocka_unit_test(nested_models_and_threads),
 		cmocka_unit_test(options_leave_out_what_they_say),
+		cmocka_unit_test(constant_tables_end_at_their_value),
 		cmocka_unit_test(can_be_cancelled),
 	};
 	const struct CMUnitTest long_tests[] = {cmocka_unit_test(the_family_of_std_ends_where_std_does)};

@@ -51,11 +51,31 @@ static int rectangle(const double lo[2], const double hi[2], double corner[][2])
 	return 4;
 }
 
-/* Clips the polygon to where every cut allows a value of at most `level`. */
+/* The caller adds floats, in short runs: a relative error of an error or a slope, at most. */
+#define ROUNDING 2e-7
+
+/* By how much rounding may have lifted a cut where the best point is. A cut from afar, where the error is many times the
+ * scale, would else rule the minimum out. */
+static double lifted(const struct l1 *l1, const struct l1_cut *cut)
+{
+	double sum = fabs(cut->error - l1->error);
+
+	for (int a = 0; a < 2; a++)
+		sum += fabs(cut->slope[a] * (cut->x[a] - l1->best[a]));
+	return ROUNDING * sum;
+}
+
+/* Clips the polygon to where a cut allows a value of at most `level`. */
+static int clip_cut(const struct l1 *l1, double corner[][2], int n, const struct l1_cut *cut, double level)
+{
+	return clip(corner, n, cut->slope, cut->x, level - cut->error + lifted(l1, cut));
+}
+
+/* The same for every cut. */
 static int clip_level(const struct l1 *l1, double corner[][2], int n, double level)
 {
 	for (int a = 0; a < l1->n_cuts && n > 0; a++)
-		n = clip(corner, n, l1->cut[a].slope, l1->cut[a].x, level - l1->cut[a].error);
+		n = clip_cut(l1, corner, n, &l1->cut[a], level);
 	return n;
 }
 
@@ -189,7 +209,9 @@ static bool promising(const struct l1 *l1, const double x[2])
 	for (int a = 0; a < l1->n_cuts; a++) {
 		const struct l1_cut *cut = &l1->cut[a];
 
-		if (cut->error + cut->slope[0] * (x[0] - cut->x[0]) + cut->slope[1] * (x[1] - cut->x[1]) >= l1->error)
+		if (cut->error + cut->slope[0] * (x[0] - cut->x[0]) + cut->slope[1] * (x[1] - cut->x[1]) -
+			    lifted(l1, cut) >=
+		    l1->error)
 			return false;
 	}
 	return true;
@@ -300,7 +322,7 @@ static bool add_cut(struct l1 *l1, double error, const double slope[2])
 		l1->n_corners = clip_level(l1, l1->corner, l1->n_corners, error);
 		return true;
 	}
-	l1->n_corners = clip(l1->corner, l1->n_corners, slope, l1->x, l1->error - error);
+	l1->n_corners = clip_cut(l1, l1->corner, l1->n_corners, cut, l1->error);
 	return false;
 }
 
