@@ -201,7 +201,7 @@ demo: setup
 
 # The sessions, links and options of README.md and docs/ against the program; sessions of measured tables with MERL=DIR.
 check-docs: setup
-	@$(MAKE) --no-print-directory all
+	@$(MAKE) --no-print-directory all library
 	@MERL='$(MERL)' scripts/check_docs.sh $(BUILD)/stdfit
 
 clean:
