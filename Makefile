@@ -62,7 +62,7 @@ test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 # Attacks on inputs, outputs and memory, and fits of hard tables: half of the time of all tests.
 only_long := alloc convert export fetch free_form hostile hostile_names hostile_outputs outputs resample slurm stiff suspects
 # Some cases in check, all in check-long: check.h, case_step().
-with_long_cases := fit objective scattered_fit
+with_long_cases := fit objective python scattered_fit
 short_programs := $(filter-out $(only_long:%=$(BUILD)/tests/test_%),$(test_programs))
 long_programs := $(foreach t,$(only_long) $(with_long_cases),$(BUILD)/tests/test_$(t))
 
@@ -201,7 +201,7 @@ demo: setup
 
 # The sessions, links and options of README.md and docs/ against the program; sessions of measured tables with MERL=DIR.
 check-docs: setup
-	@$(MAKE) --no-print-directory all
+	@$(MAKE) --no-print-directory all library
 	@MERL='$(MERL)' scripts/check_docs.sh $(BUILD)/stdfit
 
 clean:

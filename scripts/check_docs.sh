@@ -12,7 +12,8 @@
 #   <!-- check: merl -->       needs the measured tables: run where MERL=DIR names them (as merl/), else skipped by name
 #   <!-- check: free 9 10 -->  the fields 9 and 10 of each line are times and the like: not compared
 #   <!-- check: within R -->   numbers agree within R of themselves
-# Other fences are not run.
+#   <!-- check: python M -->   needs python3 with the module M: run where it is there, else skipped by name
+# Other fences are not run; <!-- check: file NAME --> above one keeps its text as that file for the sessions.
 set -eu
 export LC_ALL=C
 
@@ -33,6 +34,11 @@ mkdir "$work/bin"
 ln -s "$stdfit" "$work/bin/stdfit"
 PATH=$work/bin:$PATH
 export PATH
+# The Python module over the library of the same build, by the python3 that Debian's modules are for.
+[ ! -x /usr/bin/python3 ] || ln -s /usr/bin/python3 "$work/bin/python3"
+PYTHONPATH=$(dirname "$stdfit")/python
+STDFIT_LIBRARY=$(find "$(dirname "$stdfit")" -maxdepth 1 -name 'libstdfit.so.*')
+export PYTHONPATH STDFIT_LIBRARY
 faults=0 run=0 skipped=0
 
 fault() {
@@ -66,6 +72,15 @@ cut_page() {
 	inside && n { print >expected; next }
 	{ previous = $0 }
 	END { print n + 0 }' "$1"
+}
+
+# Writes the fences of page $1 that are files into $2.
+keep_files() {
+	awk -v dir="$2" '
+	/^```/ { name = !inside && previous ~ /^<!-- check: file .* -->$/ ? substr(previous, 18, length(previous) - 21) : ""
+		inside = !inside; previous = ""; next }
+	name { print >(dir "/" name) }
+	{ previous = $0 }' "$1"
 }
 
 # Compares files $1 (expected) and $2 (printed) as the head of this file says; $3 are the marks of the session.
@@ -193,6 +208,7 @@ check_sessions() {
 	rm -rf "$steps" "$place"
 	mkdir "$steps" "$place"
 	[ -z "$merl" ] || ln -s "$merl" "$place/merl"
+	keep_files "$page" "$place"
 	count=$(cut_page "$page" "$steps")
 	i=0
 	while [ $i -lt "$count" ]; do
@@ -202,6 +218,14 @@ check_sessions() {
 		*' merl '*)
 			if [ -z "$merl" ]; then
 				echo "check_docs: skipped, needs MERL=DIR: $page:$line: $(head -n 1 "$steps/$i.command")"
+				skipped=$((skipped + 1))
+				continue
+			fi
+			;;
+		*' python '*)
+			module=${check#*python }
+			if ! python3 -c "import ${module%% *}" 2>/dev/null; then
+				echo "check_docs: skipped, needs python3-${module%% *}: $page:$line: $(head -n 1 "$steps/$i.command")"
 				skipped=$((skipped + 1))
 				continue
 			fi

@@ -5,6 +5,9 @@ bindir ?= $(PREFIX)/bin
 libdir ?= $(PREFIX)/lib
 includedir ?= $(PREFIX)/include
 datadir ?= $(PREFIX)/share
+# Of the Python module, and where it looks for the library first.
+pythondir ?= $(datadir)/stdfit
+python_library ?= $(libdir)/$(soname)
 NM ?= nm
 OBJCOPY ?= objcopy
 export NM
@@ -17,7 +20,7 @@ public_headers := fit/stdfit.h
 shared := libstdfit.so.$(VERSION)
 soname := libstdfit.so.$(firstword $(subst ., ,$(VERSION)))
 
-library: $(BUILD)/libstdfit.a $(BUILD)/$(shared)
+library: $(BUILD)/libstdfit.a $(BUILD)/$(shared) $(BUILD)/python/stdfit.py
 
 $(BUILD)/stdfit.exports: $(library_objects) $(public_headers) scripts/exports.sh
 	$(call quiet,LIST)$(CC) $(ALL_CFLAGS) -E fit/stdfit.h | scripts/exports.sh $(library_objects) >$@.part && mv -f $@.part $@
@@ -34,12 +37,19 @@ $(BUILD)/libstdfit.a: $(library_objects) $(BUILD)/stdfit.exports
 		$(OBJCOPY) --keep-global-symbols=$(BUILD)/stdfit.exports $(BUILD)/libstdfit.o && \
 		rm -f $@ && $(AR) rcs $@ $(BUILD)/libstdfit.o
 
+# The module with the declarations of the header in it; `make install` writes where the library is.
+$(BUILD)/python/stdfit.py: scripts/stdfit.py $(public_headers) Makefile scripts/install.mk
+	@mkdir -p $(@D)
+	@$(CC) -E -P -DSTDFIT_CFFI $(public_headers) >$(BUILD)/stdfit.declarations
+	$(call quiet,WRITE)sed -e '/^@DECLARATIONS@$$/{r $(BUILD)/stdfit.declarations' -e 'd;}' -e 's,@VERSION@,$(VERSION),' $< \
+		>$@.part && mv -f $@.part $@
+
 # put MODE,FILES,FOLDER[/NAME]
 put = install -m $(1) $(2) "$(DESTDIR)$(3)"
 
 install: all library
 	install -d $(foreach d,$(bindir) $(libdir)/pkgconfig $(includedir)/stdfit $(datadir)/man/man1 \
-		$(datadir)/bash-completion/completions $(datadir)/zsh/site-functions,"$(DESTDIR)$(d)")
+		$(datadir)/bash-completion/completions $(datadir)/zsh/site-functions $(pythondir),"$(DESTDIR)$(d)")
 	$(call put,755,$(BUILD)/stdfit,$(bindir))
 	$(call put,755,$(BUILD)/$(shared),$(libdir))
 	ln -sf $(shared) "$(DESTDIR)$(libdir)/$(soname)"
@@ -52,12 +62,15 @@ install: all library
 	$(call put,644,$(BUILD)/stdfit.1,$(datadir)/man/man1)
 	$(call put,644,$(BUILD)/completions/stdfit.bash,$(datadir)/bash-completion/completions/stdfit)
 	$(call put,644,$(BUILD)/completions/_stdfit,$(datadir)/zsh/site-functions)
+	sed 's,@LIBRARY@,$(python_library),' $(BUILD)/python/stdfit.py >$(BUILD)/stdfit.py
+	$(call put,644,$(BUILD)/stdfit.py,$(pythondir))
 
 uninstall:
 	rm -f $(foreach f,$(bindir)/stdfit $(addprefix $(libdir)/,$(shared) $(soname) libstdfit.so libstdfit.a pkgconfig/stdfit.pc) \
 		$(addprefix $(includedir)/stdfit/,$(notdir $(public_headers))) $(datadir)/man/man1/stdfit.1 \
-		$(datadir)/bash-completion/completions/stdfit $(datadir)/zsh/site-functions/_stdfit,"$(DESTDIR)$(f)")
-	[ ! -d "$(DESTDIR)$(includedir)/stdfit" ] || rmdir --ignore-fail-on-non-empty "$(DESTDIR)$(includedir)/stdfit"
+		$(datadir)/bash-completion/completions/stdfit $(datadir)/zsh/site-functions/_stdfit $(pythondir)/stdfit.py,"$(DESTDIR)$(f)")
+	for d in "$(DESTDIR)$(includedir)/stdfit" "$(DESTDIR)$(pythondir)"; do \
+		[ ! -d "$$d" ] || rmdir --ignore-fail-on-non-empty "$$d"; done
 
 # The archive builds and tests on its own. It holds the files of the project alone: measured data may be in the same folder.
 dist_files := .ci .clang-format .clang-tidy .cppcheck .editorconfig .gitignore CITATION.cff CONTRIBUTING.md LICENSE \

@@ -25,8 +25,8 @@ static void all_is_there(void **state)
 	run("cd usr && find . -type f -o -type l | grep -v '^./include/' | sort", 0);
 	expect_out("./bin/stdfit\n./lib/libstdfit.a\n./lib/libstdfit.so\n./lib/libstdfit.so.");
 	expect_out("./lib/pkgconfig/stdfit.pc\n./share/bash-completion/completions/stdfit\n./share/man/man1/stdfit.1\n"
-		   "./share/zsh/site-functions/_stdfit\n");
-	assert_int_equal(count_lines(last.out), 9);
+		   "./share/stdfit/stdfit.py\n./share/zsh/site-functions/_stdfit\n");
+	assert_int_equal(count_lines(last.out), 10);
 	run("usr/bin/stdfit --version && pkg-config --modversion stdfit && readelf -d usr/lib/libstdfit.so", 0);
 	expect_out("soname: [libstdfit.so.0]");
 	run("usr/bin/stdfit --version | grep -q \"^stdfit $(pkg-config --modversion stdfit) \"", 0);
@@ -103,6 +103,22 @@ static void cffi_reads_the_header(void **state)
 	    "END\npython3 use.py",
 	    0);
 	assert_string_equal(last.out, "1.273240\nexpected threads in 1 .. 1024, found 0\n");
+}
+
+/* The Python module finds the library beside which it was installed. */
+static void python_reads_the_library(void **state)
+{
+	(void)state;
+	const char *flags = getenv("OPT");
+	if (flags && strstr(flags, "sanitize"))
+		skip_because("Python cannot load a library that was built with a sanitizer");
+	if (system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0)
+		skip_for_want_of("python3-numpy");
+	run("unset LD_LIBRARY_PATH\n"
+	    "PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=usr/share/stdfit /usr/bin/python3 -c 'import stdfit; "
+	    "print(stdfit._lib._name, \"%.6f\" % stdfit.Distribution(\"beckmann\", 0.5).D((0, 0, 1)))'",
+	    0);
+	expect_out("/usr/lib/libstdfit.so.0 1.273240\n");
 }
 
 /* What the examples print and how they end. */
@@ -209,6 +225,7 @@ int main(void)
 		cmocka_unit_test(headers_stand_alone),
 		cmocka_unit_test(nothing_else_is_needed),
 		cmocka_unit_test(cffi_reads_the_header),
+		cmocka_unit_test(python_reads_the_library),
 		cmocka_unit_test(examples_with_the_shared_library),
 		cmocka_unit_test(examples_with_the_static_library),
 		cmocka_unit_test(it_installs_below_another_root),
