@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Targets: all (default), check, check-long, check-docs, demo, bench, figures, stability, asan, ubsan, tsan, lint, architecture,
-# valgrind, compilers, fuzz, killtest, install, uninstall, dist, clean. Those that check or show something install what is
+# valgrind, compilers, fuzz, killtest, install, uninstall, dist, deb, clean. Those that check or show something install what is
 # missing first.
 VERSION := 0.2.0
 

@@ -74,11 +74,21 @@ uninstall:
 
 # The archive builds and tests on its own. It holds the files of the project alone: measured data may be in the same folder.
 dist_files := .ci .clang-format .clang-tidy .cppcheck .editorconfig .gitignore CITATION.cff CONTRIBUTING.md LICENSE \
-	Makefile NEWS.md README.md \
+	Makefile NEWS.md README.md debian \
 	$(sort $(foreach f,$(folders),$(firstword $(subst /, ,$(f))))) docs scripts tests
 dist:
 	@mkdir -p $(BUILD)
 	tar -c --sort=name --owner=0 --group=0 --numeric-owner --exclude='*~' --transform='s,^,stdfit-$(VERSION)/,' \
 		$(dist_files) | gzip -n >$(BUILD)/stdfit-$(VERSION).tar.gz
 
-.PHONY: library install uninstall dist
+# Debian's packages, of the tarball, in BUILD/deb; lintian finds nothing to say of them. The tests are left to make check.
+deb: dist
+	@scripts/setup.sh $@
+	@dpkg-parsechangelog -l debian/changelog -S Version | grep -q -x '$(VERSION)' || { \
+		echo 'debian/changelog: expected version $(VERSION)' >&2; exit 1; }
+	rm -rf $(BUILD)/deb && mkdir -p $(BUILD)/deb && tar -xzf $(BUILD)/stdfit-$(VERSION).tar.gz -C $(BUILD)/deb
+	cd $(BUILD)/deb/stdfit-$(VERSION) && unset MAKEFLAGS MFLAGS BUILD && \
+		DEB_BUILD_OPTIONS="nocheck $$DEB_BUILD_OPTIONS" dpkg-buildpackage --no-sign --build=full
+	lintian --fail-on error,warning --allow-root $(BUILD)/deb/*.changes
+
+.PHONY: library install uninstall dist deb

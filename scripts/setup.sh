@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# usage: setup.sh [lint | tsan | valgrind | compilers | fuzz]
+# usage: setup.sh [lint | tsan | valgrind | compilers | fuzz | deb]
 # Installs what building and testing need, or what that target of make needs besides, with apt-get, if anything of it is
 # missing. Says nothing if nothing is.
 set -u
@@ -18,6 +18,10 @@ lint)
 	packages="$packages clang clang-tidy clang-format libomp-dev cppcheck shellcheck"
 	;;
 tsan | compilers | fuzz) tools='clang' packages="$packages clang libclang-rt-dev libomp-dev" ;;
+deb)
+	tools='dpkg-buildpackage dh dh_python3 lintian'
+	packages="$packages libpng-dev dpkg-dev debhelper dh-python lintian"
+	;;
 valgrind) tools='valgrind' packages="$packages valgrind" ;;
 *)
 	echo "setup: no such target: '$target'" >&2
