@@ -154,7 +154,8 @@ double ndf_G1(const struct ndf *ndf, struct vec3 w);
 /* ndf_sample - a microfacet normal with the density ndf_pdf(), from two uniform numbers: u1 turns, u2 tilts.
  * Given:   u1, u2 in [0, 1)
  * Returns: a unit vector, z >= 0. u2 = 0 gives the normal +z, for gtr with sigma > 1 too. low inverts by Newton's
- *          method, the others in closed form; relative error of the slope 1e-14 where the cosine exceeds 1e-6. */
+ *          method, the others in closed form; relative error of the slope 1e-14 where the cosine exceeds 1e-6
+ *          (3e-13 where the roughnesses are as 1000 to 1). */
 struct vec3 ndf_sample(const struct ndf *ndf, double u1, double u2);
 
 /* ndf_pdf - D(m) m.z, 1/sr: the density of ndf_sample(). */

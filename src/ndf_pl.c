@@ -3,6 +3,7 @@
  * of node values by ndf_from_pwl(). */
 #include "src/ndf_class.h"
 #include "src/pwl.h"
+#include "src/quadrature.h"
 
 static double pl_D(const struct ndf *ndf, struct vec3 m)
 {
@@ -14,13 +15,45 @@ static double pl_lambda(const struct ndf *ndf, struct vec3 w)
 	return pwl_lambda(ndf->pwl, w);
 }
 
-/* The density of slopes has no closed form here. */
+/* The integral of P22 across the slope q. With t^2 = q^2 + p^2 and p = c tan v, c^2 = 1 + q^2, it is
+ *     P2 = 2/c^3 int_0^{pi/2} D(atan t) cos^2 v dv,
+ * smooth between the v of two nodes. */
+struct across {
+	const struct ndf *ndf;
+	double q, c;
+};
+
+static double across_at(double v, void *params)
+{
+	const struct across *across = params;
+	const double cosine = cos(v);
+	/* 1/cos(theta) is c/cos v */
+	const double z = cosine / across->c, sine = hypot(across->q * cosine, across->c * sin(v)) / across->c;
+
+	return pwl_D(across->ndf->pwl, (struct vec3){sine, 0, z}) * cosine * cosine;
+}
+
 static double pl_P2(const struct ndf *ndf, double s, double q)
 {
-	(void)ndf;
+	const struct pwl *pwl = ndf->pwl;
+	struct across across = {ndf, fabs(q), hypot(1, q)};
+	double sum = 0, low = 0;
+
 	(void)s;
-	(void)q;
-	return NAN;
+	if (isnan(q) || isinf(q))
+		return isnan(q) ? q : 0;
+	for (int n = 0; n + 1 < pwl->n_nodes; n++) {
+		const bool last = n + 2 == pwl->n_nodes;
+		const double t = tan(pwl->nodes[n + 1].theta), p2 = (t - across.q) * (t + across.q);
+		const double high = last ? M_PI_2 : p2 > 0 ? atan(sqrt(p2) / across.c) : 0;
+		const double largest = pwl->nodes[n].Fx + pwl->nodes[n + 1].Fx;
+
+		if (!(high > low))
+			continue;
+		sum += quadrature_adaptive(across_at, &across, low, high, 1e-15 * largest * (high - low));
+		low = high;
+	}
+	return 2 * sum / (across.c * across.c * across.c);
 }
 
 const struct ndf_class ndf_class_pl = {

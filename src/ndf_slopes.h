@@ -12,7 +12,7 @@ double ndf_P22(const struct ndf *ndf, double p, double q);
 /* ndf_P2 - density of the slope q along the azimuth phi (radians), the integral of P22 across it.
  *     Student-t slopes   K (1 + (q/s)^2/a)^(1/2-gamma) / (s sqrt(a))         s^2 = sigma_x^2 cos^2 phi + sigma_y^2
  * sin^2 phi beckmann           exp(-(q/s)^2) / (s sqrt(pi))                        (eq. 4 and 15 of the STD supplement)
- *     gtr, low           by quadrature
+ *     gtr, low, pl       by quadrature
  * Returns: relative error 2e-15 + 1e-15 |ln(s P2)|; quadrature 1e-11. */
 double ndf_P2(const struct ndf *ndf, double phi, double q);
 

@@ -66,7 +66,7 @@ double pwl_D(const struct pwl *pwl, struct vec3 m);
  *     Lambda = tan(theta_o) int_E^{pi/2} sin^2(theta) ((Fx + Fy)(sin b - b cos b) + (Fx - Fy) cos(2 phi_o) sin^3(b)/3),
  * E = pi/2 - theta_o, Fx = Dx Dy(0)/c, Fy = Dy Dx(0)/c, by Gauss-Legendre rules on cells, those near E in a variable
  * in which the integrand has no square root.
- * Returns: Lambda >= 0, relative error 1e-12; 0 at normal incidence, INFINITY for o.z <= 0; NaN in gives NaN out. */
+ * Returns: Lambda >= 0, relative error 1e-12, from theta_o of 89.5 degrees on 5e-11; 0 at normal incidence, INFINITY for o.z <= 0; NaN in gives NaN out. */
 double pwl_lambda(const struct pwl *pwl, struct vec3 o);
 
 /* pwl_G1 - 1/(1 + Lambda(o)), in [0, 1]. Both directions together: G as in smith.h from Lambda or G1. */

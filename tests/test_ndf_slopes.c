@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
 #include "src/ndf_slopes.h"
+#include "src/pwl.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
 
@@ -136,6 +137,52 @@ static void check_P2(const struct ndf *ndf)
 	gsl_integration_workspace_free(workspace);
 }
 
+/* Piecewise linear, with a kink at each node: against sums over the pieces between them. */
+static void P2_of_pl_is_the_integral_of_P22(void **state)
+{
+	enum { NODES = 13 };
+	static const double value[NODES] = {9, 7, 8, 3, 2, 2.5, 1, 0.4, 0.5, 0.1, 0.02, 0.3, 0.2};
+	gsl_integration_workspace *workspace = gsl_integration_workspace_alloc(300);
+	double theta[NODES], all = 0;
+	struct pwl pwl;
+	struct ndf ndf;
+
+	(void)state;
+	for (int i = 0; i < NODES; i++)
+		theta[i] = 0.5 * M_PI * i / (NODES - 1);
+	assert_int_equal(pwl_init(&pwl, NODES, theta, value, NULL), STATUS_OK);
+	ndf_from_pwl(&ndf, &pwl);
+	for (double q = 0; q < 40; q = 1.7 * q + 0.07) {
+		struct line line = {&ndf, 0.3, q};
+		gsl_function f = {across, &line};
+		double sum = 0, part, error, low = 0;
+
+		for (int i = 1; i < NODES - 1; i++) {
+			const double t = tan(theta[i]), high = t > q ? sqrt((t - q) * (t + q)) : 0;
+
+			if (high > low) {
+				gsl_integration_qag(&f, low, high, 0, 1e-13, 300, GSL_INTEG_GAUSS31, workspace, &part,
+						    &error);
+				sum += part;
+				low = high;
+			}
+		}
+		gsl_integration_qagiu(&f, low, 0, 1e-12, 300, workspace, &part, &error);
+		check_rel(ndf_P2(&ndf, 0.3, q), 2 * (sum + part), 1e-11, "P2 of pl");
+		check_rel(ndf_P2(&ndf, 1, -q), ndf_P2(&ndf, 0.3, q), 0, "even, the same all round");
+	}
+	/* With q = tan a. */
+	for (int i = 0; i < 4000; i++) {
+		const double a = (i + 0.5) * (M_PI / 2) / 4000;
+
+		all += 2 * ndf_P2(&ndf, 0, tan(a)) / (cos(a) * cos(a)) * (M_PI / 2) / 4000;
+	}
+	check_rel(all, 1, 1e-6, "integral of P2");
+	assert_true(ndf_P2(&ndf, 0, INFINITY) == 0 && isnan(ndf_P2(&ndf, 0, NAN)));
+	pwl_free(&pwl);
+	gsl_integration_workspace_free(workspace);
+}
+
 static void P2_is_the_integral_of_P22(void **state)
 {
 	(void)state;
@@ -201,13 +248,10 @@ static void moments_at_the_edges_are_their_limits(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(family_matches_golden_rows),
-		cmocka_unit_test(P2_matches_golden_rows),
-		cmocka_unit_test(moments_match_golden_rows),
-		cmocka_unit_test(gtr_matches_golden_rows),
-		cmocka_unit_test(P2_is_the_integral_of_P22),
-		cmocka_unit_test(moments_are_integrals_of_P2),
-		cmocka_unit_test(moments_at_the_edges_are_their_limits),
+		cmocka_unit_test(family_matches_golden_rows),  cmocka_unit_test(P2_matches_golden_rows),
+		cmocka_unit_test(moments_match_golden_rows),   cmocka_unit_test(gtr_matches_golden_rows),
+		cmocka_unit_test(P2_is_the_integral_of_P22),   cmocka_unit_test(P2_of_pl_is_the_integral_of_P22),
+		cmocka_unit_test(moments_are_integrals_of_P2), cmocka_unit_test(moments_at_the_edges_are_their_limits),
 	};
 	gsl_set_error_handler_off();
 	return cmocka_run_group_tests_name("ndf_slopes", tests, NULL, NULL);
