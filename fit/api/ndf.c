@@ -333,8 +333,6 @@ enum stdfit_status stdfit_ndf_P2(const stdfit_ndf *ndf, double phi, double q, do
 		return status;
 	if (!density || !isfinite(phi) || !isfinite(q))
 		return api_fail(error, STATUS_DOMAIN, "expected finite phi and slope, and room for the density");
-	if (ndf->kind != API_NDF_CLASS)
-		return api_fail(error, STATUS_UNSUPPORTED, "a piecewise distribution has no P2");
 	*density = ndf_P2(inner, phi, q);
 	return STDFIT_OK;
 }
