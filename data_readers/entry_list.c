@@ -24,7 +24,8 @@ static float stored_value(double x)
 	return x < (double)FLT_MIN ? 0 : (float)x;
 }
 
-/* Azimuths within a thousandth of a degree are one. */
+/* Azimuths within a thousandth of a degree are one, and so are two half a turn apart, as signed angles in a plane have
+ * them: every model here is the same after half a turn. */
 static void note_azimuth(struct entry_list *list, struct vec3 wi)
 {
 	const double same = 2e-5;
@@ -34,7 +35,7 @@ static void note_azimuth(struct entry_list *list, struct vec3 wi)
 	if (!list->has_azimuth)
 		list->azimuth = azimuth;
 	list->has_azimuth = true;
-	list->several_azimuths = fabs(remainder(azimuth - list->azimuth, 2 * M_PI)) > same;
+	list->several_azimuths = fabs(remainder(azimuth - list->azimuth, M_PI)) > same;
 }
 
 enum status entry_list_add(struct entry_list *list, const struct entry *entry, bool derived)

@@ -2,6 +2,7 @@
 #include "data_readers/measurement.h"
 #include "data_readers/rgl.h"
 #include "src/names.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <sys/mman.h>
 
@@ -187,4 +188,23 @@ double cell_measure(int i, int j)
 
 	/* phi_d is one degree wide in both variants of the table. */
 	return 4 * w_h * w_d * (M_PI / 180);
+}
+
+const char *measurement_left_out(const struct measurement *measurement, bool masked, char text[MEASUREMENT_LEFT_OUT])
+{
+	const struct {
+		size_t n;
+		const char *what;
+	} left[] = {{measurement->n_negative, "negative"},
+		    {measurement->n_nonfinite, "not finite"},
+		    {measurement->n_below_horizon, "at or below the horizon"},
+		    {masked ? measurement->n_out_of_gamut : 0, "out of gamut"}};
+	size_t used = 0;
+
+	text[0] = '\0';
+	for (size_t i = 0; measurement->scattered && i < sizeof left / sizeof *left; i++)
+		if (left[i].n)
+			used += (size_t)snprintf(text + used, MEASUREMENT_LEFT_OUT - used, "%s%zu %s", used ? "; " : "",
+						 left[i].n, left[i].what);
+	return text;
 }

@@ -76,6 +76,10 @@ MUST_CHECK enum status measurement_scattered(struct measurement *measurement, si
 /* measurement_require_table - STATUS_UNSUPPORTED, and that `what` ("fit", ...) needs a table, for scattered entries. */
 MUST_CHECK enum status measurement_require_table(const struct measurement *measurement, const char *what,
 						 struct error *why);
+enum { MEASUREMENT_LEFT_OUT = 160 };
+/* measurement_left_out - which samples of a file are not among those of a scattered measurement though they have values, "3
+ * negative; 1 at or below the horizon"; of those out of gamut only if `masked`. "" of a table. Returns text. */
+const char *measurement_left_out(const struct measurement *measurement, bool masked, char text[MEASUREMENT_LEFT_OUT]);
 /* measurement_free - releases the planes and clears the struct; harmless on a zeroed one. */
 void measurement_free(struct measurement *measurement);
 

@@ -256,6 +256,20 @@ static void mistyped_words_name_the_nearest(void **state)
 	}
 }
 
+/* What a fit cannot use is said; -q leaves that out. */
+static void left_out_samples_are_counted(void **state)
+{
+	(void)state;
+	shell("printf "
+	      "'theta_i,phi_i,theta_o,phi_o,value\\n10,0,20,180,.1\\n10,0,30,180,.2\\n40,0,50,180,.3\\n10,0,95,0,."
+	      "1\\n10,0,20,0,-1"
+	      "\\n' >samples.csv; \"$STDFIT\" samples.csv --ndf ggx --no-specular");
+	expect_error(0, "'samples.csv': left out: 1 negative; 1 at or below the horizon");
+	stdfit("samples.csv --ndf ggx --no-specular -q");
+	expect_code(0);
+	assert_string_equal(last.err, "");
+}
+
 /* Each has its answer on standard output; a bare call is wrong usage all the same. */
 static void first_words_are_answered(void **state)
 {
@@ -959,6 +973,7 @@ int main(void)
 		cmocka_unit_test(wrong_usage_is_refused),
 		cmocka_unit_test(bad_files_are_refused),
 		cmocka_unit_test(mistyped_words_name_the_nearest),
+		cmocka_unit_test(left_out_samples_are_counted),
 		cmocka_unit_test(first_words_are_answered),
 		cmocka_unit_test(helps_fit_80_columns),
 		cmocka_unit_test(nan_and_inf_are_masked_and_counted),

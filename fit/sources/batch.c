@@ -183,6 +183,7 @@ static enum status process(struct run *run, struct batch_file *file)
 		if (fit.n_ndf > 0) {
 			suspects_find(&measurement, &fit.criterion, &file->suspects);
 			suspects_words(&file->suspects, file->words);
+			measurement_left_out(&measurement, reading.gamut == GAMUT_MASK, file->left_out);
 			status = fit_samples(run, file, &measurement, &fit);
 		}
 		measurement_free(&measurement);
@@ -241,13 +242,15 @@ static void *work(void *argument)
 	return NULL;
 }
 
-static void report_suspects(const struct batch_file *file)
+/* What the file has that the fit cannot use, and what looks wrong with the rest. */
+static void report_suspects(const struct batch_file *file, bool quiet)
 {
 	char name[TEXT_QUOTE_SIZE], text[SUSPECTS_TEXT];
-	if (!file->suspects.found)
-		return;
 	text_quote(file->path, name, sizeof name);
-	report_error("'%s' looks wrong: %s", name, suspects_explain(&file->suspects, text));
+	if (file->left_out[0] && !quiet)
+		report_error("'%s': left out: %s", name, file->left_out);
+	if (file->suspects.found)
+		report_error("'%s' looks wrong: %s", name, suspects_explain(&file->suspects, text));
 }
 
 static void wait_a_tick(struct run *run)
@@ -282,7 +285,7 @@ static bool hand_on(struct run *run, size_t *n_failed)
 		progress.kept = kept;
 		file->done = true;
 		*n_failed += file->failed;
-		report_suspects(file);
+		report_suspects(file, batch->options->quiet);
 		if (file->failed)
 			report_error("%s", file->error.text);
 		if (!stopped && batch->done && !batch->done(batch->user, file)) {

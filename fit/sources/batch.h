@@ -12,14 +12,15 @@
 /* struct batch_file - one file and its result. */
 struct batch_file {
 	const char *path;
-	char input[RESULT_INPUT_SIZE]; /* "" until it is read */
-	struct suspects suspects;      /* what looks wrong with it; of a file that is fitted */
-	char words[SUSPECTS_WORDS];    /* the same as a cell of its rows */
-	bool unread;                   /* it could not be read at all: its bytes are unknown */
-	struct csv_table rows;         /* new rows: none for NDFs that the store has, a failure's row per NDF */
-	struct trace trace;            /* if the options want one */
-	bool done;                     /* false: not begun, or interrupted */
-	bool kept;                     /* the store had all its rows */
+	char input[RESULT_INPUT_SIZE];       /* "" until it is read */
+	struct suspects suspects;            /* what looks wrong with it; of a file that is fitted */
+	char left_out[MEASUREMENT_LEFT_OUT]; /* samples of a file that is fitted which are not compared */
+	char words[SUSPECTS_WORDS];          /* the same as a cell of its rows */
+	bool unread;                         /* it could not be read at all: its bytes are unknown */
+	struct csv_table rows;               /* new rows: none for NDFs that the store has, a failure's row per NDF */
+	struct trace trace;                  /* if the options want one */
+	bool done;                           /* false: not begun, or interrupted */
+	bool kept;                           /* the store had all its rows */
 	bool failed;
 	struct error error; /* why it failed */
 };
