@@ -1,36 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables of scattered samples: what lies between them, beside them, and their pictures. */
 #include "data_readers/measurement_read.h"
-#include "data_readers/resample.h"
 #include "data_readers/samples_csv.h"
-#include "make_samples.h"
+#include "resampled.h"
 #include "rgl_file.h"
 #include "run_program.h"
-
-/* A material that changes slowly, and the program's options for it. */
-#define MODEL "--ndf ggx --sigma 0.4 --ior 1.5 --kd 0.31,0.12,0.047 --ks 0.42,0.63,0.77"
-
-static struct cook_torrance smooth_model(void)
-{
-	return make_model("ggx", 0.4, 2, 1.5);
-}
-
-static struct measurement resampled(const struct measurement *from, int n_phi_d, enum gaps gaps, int threads,
-				    struct resampled *result)
-{
-	struct measurement table;
-	assert_int_equal(measurement_resample(from, BINS_NODE, n_phi_d, gaps, threads, &table, result), STATUS_OK);
-	assert_null(table.scattered);
-	assert_int_equal(table.n_phi_d, n_phi_d);
-	return table;
-}
-
-static void check_same(const struct measurement *a, const struct measurement *b)
-{
-	assert_int_equal(measurement_count(a), measurement_count(b));
-	for (int c = 0; c < MERL_CHANNELS; c++)
-		assert_memory_equal(a->value[c], b->value[c], measurement_count(a) * sizeof(float));
-}
 
 static void what_lies_between_is_interpolated(void **state)
 {
