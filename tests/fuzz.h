@@ -22,6 +22,8 @@ int fuzz_csv(const uint8_t *data, size_t size);          /* samples as CSV */
 int fuzz_alta(const uint8_t *data, size_t size);         /* ALTA texts */
 int fuzz_cornell(const uint8_t *data, size_t size);      /* Cornell texts */
 int fuzz_zemax(const uint8_t *data, size_t size);        /* Zemax texts */
+int fuzz_model(const uint8_t *data, size_t size);        /* models as JSON */
+int fuzz_image(const uint8_t *data, size_t size);        /* pictures: HDR, PFM */
 int fuzz_command_line(const uint8_t *data, size_t size); /* arguments */
 
 #define PROMISE(kept) ((kept) ? (void)0 : fuzz_broken(__FILE__, __LINE__, #kept))
@@ -32,6 +34,19 @@ _Noreturn static inline void fuzz_broken(const char *file, int line, const char 
 {
 	dprintf(fuzz_stderr, "%s:%d: broken promise: %s\n", file, line, promise);
 	abort();
+}
+
+enum { FUZZ_PATH = 64 };
+
+/* A file in memory with these bytes, and the path by which it can be read; to be closed. */
+static inline int fuzz_file(const uint8_t *data, size_t size, char path[FUZZ_PATH])
+{
+	const int fd = memfd_create("fuzz", MFD_CLOEXEC);
+
+	if (fd < 0 || write(fd, data, size) != (ssize_t)size)
+		abort();
+	snprintf(path, FUZZ_PATH, "/proc/self/fd/%d", fd);
+	return fd;
 }
 
 /* What the code under test writes to a standard stream goes to a file in memory meanwhile. */

@@ -3,7 +3,6 @@
 #include "data_readers/rgl.h"
 #include "fuzz.h"
 #include <float.h>
-#include <sys/mman.h>
 
 static void check_entry(const struct measurement *m, size_t n)
 {
@@ -19,14 +18,10 @@ static void check_entry(const struct measurement *m, size_t n)
 
 int fuzz_rgl(const uint8_t *data, size_t size)
 {
-	const int fd = memfd_create("fuzz", MFD_CLOEXEC);
 	struct measurement measurement;
 	struct error error = {""};
-	char path[64], message[1024];
-
-	if (fd < 0 || write(fd, data, size) != (ssize_t)size)
-		abort();
-	snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
+	char path[FUZZ_PATH], message[1024];
+	const int fd = fuzz_file(data, size, path);
 	const enum status status = rgl_read(path, GAMUT_MASK, &measurement, &error);
 	snprintf(message, sizeof message, "stdfit: %s\n", error.text);
 	PROMISE(status == STATUS_OK || (measurement.scattered == NULL && is_message(message)));

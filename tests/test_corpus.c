@@ -64,6 +64,18 @@ static void rgl_reader_keeps_its_promises(void **state)
 	run_corpus("rgl", fuzz_rgl);
 }
 
+static void models_keep_their_promises(void **state)
+{
+	(void)state;
+	run_corpus("model", fuzz_model);
+}
+
+static void pictures_keep_their_promises(void **state)
+{
+	(void)state;
+	run_corpus("image", fuzz_image);
+}
+
 static void result_tables_keep_their_promises(void **state)
 {
 	(void)state;
@@ -125,6 +137,8 @@ int main(void)
 		cmocka_unit_test(json_check_knows_json),
 		cmocka_unit_test(merl_reader_keeps_its_promises),
 		cmocka_unit_test(rgl_reader_keeps_its_promises),
+		cmocka_unit_test(models_keep_their_promises),
+		cmocka_unit_test(pictures_keep_their_promises),
 		cmocka_unit_test(result_tables_keep_their_promises),
 		cmocka_unit_test(command_lines_keep_their_promises),
 		cmocka_unit_test(csv_reader_keeps_its_promises),
