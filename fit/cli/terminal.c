@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/cli/terminal.h"
+#include <poll.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -13,6 +14,13 @@ int terminal_width(FILE *stream)
 	if (!isatty(fileno(stream)) || ioctl(fileno(stream), TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
 		return USUAL;
 	return size.ws_col < NARROWEST ? NARROWEST : size.ws_col;
+}
+
+bool terminal_reader_is_gone(void)
+{
+	struct pollfd out = {STDOUT_FILENO, 0, 0};
+
+	return poll(&out, 1, 0) == 1 && (out.revents & POLLERR);
 }
 
 /* Columns of n bytes of text, one per character. */

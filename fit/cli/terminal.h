@@ -3,10 +3,14 @@
 #ifndef TERMINAL_H
 #define TERMINAL_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 /* terminal_width - columns of the terminal behind a stream, at least 40; 80 where there is none. */
 int terminal_width(FILE *stream);
+
+/* terminal_reader_is_gone - whether standard output is a pipe that nobody reads any more, as behind `| head`. */
+bool terminal_reader_is_gone(void);
 
 /* terminal_wrap - a text, broken at blanks into lines of at most `width` columns. The first begins at column `at`; the
  * others are indented by `indent`. No newline at the end. Returns the column reached. */

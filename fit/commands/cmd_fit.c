@@ -5,6 +5,7 @@
 #include "fit/cli/messages.h"
 #include "fit/cli/outputs.h"
 #include "fit/cli/report.h"
+#include "fit/cli/terminal.h"
 #include "fit/commands/commands.h"
 #include "fit/sources/batch.h"
 
@@ -53,7 +54,11 @@ static bool advance(struct sink *sink, bool all)
 	}
 	if (!fflush(stdout) && !ferror(stdout))
 		return true;
-	error_set(&sink->error, STATUS_IO, "cannot write standard output: %s", strerror(errno));
+	/* A reader that has seen enough is told nothing. */
+	if (terminal_reader_is_gone())
+		sink->error.text[0] = '\0';
+	else
+		error_set(&sink->error, STATUS_IO, "cannot write standard output: %s", strerror(errno));
 	return false;
 }
 
@@ -114,7 +119,7 @@ static int run(struct sink *sink, struct batch *batch)
 		sink->broken = true;
 		code = EXIT_FAILED;
 	}
-	if (sink->broken)
+	if (sink->broken && sink->error.text[0])
 		report_error("%s", sink->error.text);
 	return code;
 }

@@ -5,6 +5,7 @@
 #include "fit/cli/messages.h"
 #include "fit/cli/options.h"
 #include "fit/cli/stack.h"
+#include "fit/cli/terminal.h"
 #include "fit/cli/version.h"
 #include "fit/commands/commands.h"
 
@@ -122,9 +123,11 @@ int main(int argc, char **argv)
 	const int unfit = stack_prepare();
 	const int code = unfit >= 0 ? unfit : dispatch(argc, argv);
 	errno = 0;
-	const bool failed = ferror(stdout);
+	const bool failed = fflush(stdout) || ferror(stdout), gone = failed && terminal_reader_is_gone();
 	if ((!fclose(stdout) && !failed) || code == EXIT_INTERRUPTED || code == EXIT_FAILED)
 		return code;
+	if (gone)
+		return EXIT_FAILED;
 	report_error("cannot write standard output: %s", errno ? strerror(errno) : "an earlier write failed");
 	return EXIT_FAILED;
 }
