@@ -2,7 +2,6 @@
 /* The bytes are a picture: Radiance HDR or PFM, as they begin. What is read has the pixels that it says. */
 #include "fit/render/image.h"
 #include "fuzz.h"
-#include <math.h>
 
 int fuzz_image(const uint8_t *data, size_t size)
 {
@@ -18,13 +17,15 @@ int fuzz_image(const uint8_t *data, size_t size)
 		PROMISE(is_message(message));
 		return 0;
 	}
-	double sum = 0;
+	const size_t pixels = (size_t)image.width * (size_t)image.height;
+	volatile float last = 0;
 
 	PROMISE(image.width > 0 && image.height > 0);
-	for (size_t n = 0; n < 3 * (size_t)image.width * (size_t)image.height; n++)
-		sum += (double)image.rgb[n];
 	/* A claim of many pixels needs bytes for them. */
-	PROMISE((size_t)image.width * (size_t)image.height <= 64 * size + 64 && (sum < 0 || sum >= 0 || isnan(sum)));
+	PROMISE(pixels <= 64 * size + 64);
+	for (size_t n = 0; n < 3 * pixels; n++)
+		last = image.rgb[n];
+	(void)last;
 	image_free(&image);
 	return 0;
 }

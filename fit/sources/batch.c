@@ -245,12 +245,14 @@ static void *work(void *argument)
 /* What the file has that the fit cannot use, and what looks wrong with the rest. */
 static void report_suspects(const struct batch_file *file, bool quiet)
 {
-	char name[TEXT_QUOTE_SIZE], text[SUSPECTS_TEXT];
+	char name[TEXT_QUOTE_SIZE];
 	text_quote(file->path, name, sizeof name);
 	if (file->left_out[0] && !quiet)
 		report_error("'%s': left out: %s", name, file->left_out);
-	if (file->suspects.found)
+	if (file->suspects.found) {
+		char text[SUSPECTS_TEXT];
 		report_error("'%s' looks wrong: %s", name, suspects_explain(&file->suspects, text));
+	}
 }
 
 static void wait_a_tick(struct run *run)
