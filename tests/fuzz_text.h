@@ -76,16 +76,13 @@ static inline void fuzz_text_read(const char *path, const struct read_options *o
 
 static inline int fuzz_text(const struct text_format *format, const uint8_t *data, size_t size)
 {
-	char path[64];
+	char path[FUZZ_PATH];
 	if (size == 0)
 		return 0;
 	const struct read_options options = {.threads = 1,
 					     .quantity = (enum quantity)(data[0] % QUANTITY_COUNT),
 					     .gamut = (enum gamut)(data[0] / QUANTITY_COUNT % GAMUT_COUNT)};
-	const int fd = memfd_create("measurement", 0);
-	if (fd < 0 || write(fd, data + 1, size - 1) != (ssize_t)(size - 1))
-		abort();
-	snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
+	const int fd = fuzz_file(data + 1, size - 1, path);
 	fuzz_text_parse(format, path, &options);
 	fuzz_text_read(path, &options, size - 1);
 	close(fd);

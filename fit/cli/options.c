@@ -336,16 +336,12 @@ static int take_option(struct options *options, int i, const char *text)
 			     option_comma_hint(text));
 }
 
-/* Names of the long options of a command, in the order of its table, then "help" and "version". */
-struct option_names {
-	enum command command;
-};
-
+/* Names of the long options of *data, a command, in the order of its table, then "help" and "version". */
 static const char *option_name_at(const void *data, int i)
 {
-	const struct option_names *names = data;
+	const enum command *command = data;
 	for (const struct option_spec *spec = option_specs; spec->name; spec++)
-		if (option_applies(spec, names->command) && i-- == 0)
+		if (option_applies(spec, *command) && i-- == 0)
 			return spec->name;
 	return i == 0 ? "help" : i == 1 ? "version" : NULL;
 }
@@ -353,25 +349,24 @@ static const char *option_name_at(const void *data, int i)
 /* "--n: --ndf, --no-diffuse" of the options that begin so, or of one that is like it; empty where there is neither. */
 static void hint_of(enum command command, const char *typed, char *hint, size_t size, int *n_beginning)
 {
-	const struct option_names names = {command};
 	const size_t length = strcspn(typed, "=");
 	char name[64];
 	*n_beginning = 0;
 	hint[0] = '\0';
-	for (int i = 0; option_name_at(&names, i); i++)
-		if (strncmp(option_name_at(&names, i), typed, length) == 0) {
+	for (int i = 0; option_name_at(&command, i); i++)
+		if (strncmp(option_name_at(&command, i), typed, length) == 0) {
 			const size_t used = strlen(hint);
 			snprintf(hint + used, size - used, "%s--%s", *n_beginning ? ", " : "",
-				 option_name_at(&names, i));
+				 option_name_at(&command, i));
 			++*n_beginning;
 		}
 	if (*n_beginning > 1 || length >= sizeof name)
 		return;
 	memcpy(name, typed, length);
 	name[length] = '\0';
-	const int near = nearest_word(name, option_name_at, &names);
+	const int near = nearest_word(name, option_name_at, &command);
 	if (near >= 0)
-		snprintf(hint, size, ": did you mean --%s?", option_name_at(&names, near));
+		snprintf(hint, size, ": did you mean --%s?", option_name_at(&command, near));
 }
 
 static int bad_option(enum command command, int code, char **argv)

@@ -58,13 +58,9 @@ void report_json(FILE *file, const struct csv_table *table)
 
 /* Readable tables */
 
-/* Columns that a text occupies on a terminal, one per character. */
 static int text_width(const char *text)
 {
-	int width = 0;
-	for (; *text; text++)
-		width += (*text & 0xc0) != 0x80;
-	return width;
+	return terminal_columns(text, strlen(text));
 }
 
 static void print_padded(FILE *file, const char *text, int width, bool right)

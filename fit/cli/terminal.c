@@ -23,12 +23,11 @@ bool terminal_reader_is_gone(void)
 	return poll(&out, 1, 0) == 1 && (out.revents & POLLERR);
 }
 
-/* Columns of n bytes of text, one per character. */
-static int columns(const char *text, size_t n)
+int terminal_columns(const char *text, size_t n)
 {
 	int count = 0;
 
-	for (size_t i = 0; i < n; i++)
+	for (size_t i = 0; i < n && text[i]; i++)
 		count += (text[i] & 0xc0) != 0x80;
 	return count;
 }
@@ -39,7 +38,7 @@ int terminal_wrap(FILE *file, const char *text, int at, int indent, int width)
 
 	while (*text) {
 		const size_t n = strcspn(text, " ");
-		const int word = columns(text, n);
+		const int word = terminal_columns(text, n);
 
 		if (*gap && at + 1 + word > width) {
 			fprintf(file, "\n%*s", indent, "");

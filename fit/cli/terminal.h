@@ -12,6 +12,9 @@ int terminal_width(FILE *stream);
 /* terminal_reader_is_gone - whether standard output is a pipe that nobody reads any more, as behind `| head`. */
 bool terminal_reader_is_gone(void);
 
+/* terminal_columns - columns that the first n bytes of a text occupy, at most those before its end: one per character. */
+int terminal_columns(const char *text, size_t n);
+
 /* terminal_wrap - a text, broken at blanks into lines of at most `width` columns. The first begins at column `at`; the
  * others are indented by `indent`. No newline at the end. Returns the column reached. */
 int terminal_wrap(FILE *file, const char *text, int at, int indent, int width);
