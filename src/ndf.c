@@ -121,6 +121,17 @@ enum status ndf_init_params(struct ndf *ndf, const struct ndf_class *class, cons
 	return finish(&filled, ndf);
 }
 
+enum status ndf_init_params_anisotropic(struct ndf *ndf, const struct ndf_class *class, const double value[],
+					double sigma_y)
+{
+	struct ndf filled;
+	if (!class || class->isotropic || !sigma_valid(sigma_y) || ndf_init_params(&filled, class, value) != STATUS_OK)
+		return STATUS_DOMAIN;
+	filled.sigma_y = sigma_y;
+	*ndf = filled;
+	return STATUS_OK;
+}
+
 enum status ndf_set_lambda_form(struct ndf *ndf, enum lambda_form form)
 {
 	if (form != LAMBDA_EXACT && !ndf->class->student_t)

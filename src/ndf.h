@@ -112,6 +112,11 @@ MUST_CHECK enum status ndf_init(struct ndf *ndf, const struct ndf_class *ndf_cla
  * Returns: as ndf_init(). */
 MUST_CHECK enum status ndf_init_params(struct ndf *ndf, const struct ndf_class *ndf_class, const double value[]);
 
+/* ndf_init_params_anisotropic - the same with the roughness value[0] along x and sigma_y along y, so that t-family is
+ * anisotropic with any x. Returns: as ndf_init(). */
+MUST_CHECK enum status ndf_init_params_anisotropic(struct ndf *ndf, const struct ndf_class *ndf_class,
+						   const double value[], double sigma_y);
+
 /* ndf_from_pwl - the isotropic piecewise-linear distribution *pwl, which has to outlive *ndf. */
 void ndf_from_pwl(struct ndf *ndf, const struct pwl *pwl);
 

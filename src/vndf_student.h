@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* vndf_student - inverse CDF of Student-t slopes, plain or as seen from a direction. Private to src/.
+/* vndf_student - CDF and inverse CDF of Student-t slopes, plain or as seen from a direction. Private to src/.
  *
  * The slope X has density k (1 + X^2)^-p, p > 1 (a Student t with 2p - 1 degrees of freedom, scaled). Seen from a
  * direction it is weighted by the facet's projected area (c - s X)+, c >= 0, s >= 0.
@@ -17,5 +17,8 @@ struct student {
  * Given:   u in (0, 1)
  * Returns: w with |CDF(w) - u| <= 1e-13 and <= 1e-11 u; at most the w of X = c/s. */
 double student_quantile(const struct student *student, double u);
+
+/* student_cdf - the CDF itself at the slope X: absolute error 1e-14, 1 from X = c/s on. */
+double student_cdf(const struct student *student, double X);
 
 #endif
