@@ -35,7 +35,7 @@ struct options {
 	/* A distribution, for ndf and sample, in words: distribution.h. */
 	const char *sigma_words, *gamma_words, *params;
 	const char *theta, *phi; /* lists of angles: angles.h */
-	double theta_i;          /* degrees; NaN: not given */
+	double theta_i, phi_i;   /* degrees; theta_i NaN: not given */
 	enum sampling sampling;  /* and for render */
 	int count;
 	int n_phi_d;
