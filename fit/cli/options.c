@@ -69,10 +69,12 @@ static const struct command_text commands[COMMAND_COUNT] = {
 	[COMMAND_NDF] =
 		{"ndf", "[NAME]", "D, P22, P2, Lambda, G1 and pdf of a distribution as a table",
 		 "Tabulates a normal distribution function: D and pdf of the normal at theta and phi, P22 of its\n"
-		 "slope, P2 of the slope tan(theta) along phi, Lambda and G1 of the direction there; with --theta-i\n"
-		 "the density of the normal among those visible, and the weight of such a sample. NAME is an NDF,\n"
-		 "ellipsoid, or - for rows of standard input: a CSV with the columns ndf, sigma, sigma_y, gamma,\n"
-		 "params, lambda, theta, phi, theta_i, as far as needed. With --from, the NDFs of a result table.\n"},
+		 "slope, P2 of the slope tan(theta) along phi and its moments, Lambda and G1 of the direction there,\n"
+		 "the shares of normals below theta and in (0, phi); with --theta-i the density of the normal among\n"
+		 "those visible, the weight of such a sample, and the CDFs of its slopes along and across that\n"
+		 "direction. NAME is an NDF, ellipsoid, or - for rows of standard input: a CSV with the columns ndf,\n"
+		 "sigma, sigma_y, gamma, params, lambda, theta, phi, theta_i, phi_i, as far as needed. With --from,\n"
+		 "the NDFs of a result table.\n"},
 	[COMMAND_SAMPLE] =
 		{"sample", "[NAME]", "random normals of a distribution, and where they reflect to",
 		 "Draws normals m, visible or all, with their density. With --theta-i also the direction wo into\n"
