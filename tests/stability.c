@@ -819,7 +819,7 @@ static void sweep_lobe(struct objective *o, const struct geometry *g, const stru
 		       const char *density)
 {
 	static float s[KERNEL_BLOCK], plain[KERNEL_BLOCK];
-	const struct kernel_g1 g1 = masking_kernel(&o->masking);
+	const struct kernel_g1 g1 = masking_kernel(&o->lobe[0].masking);
 	static const enum kernel_gaf gaf[] = {KERNEL_SEPARABLE, KERNEL_CORRELATED, KERNEL_STATIC};
 	char name[32];
 	snprintf(name, sizeof(name), "%s %s", gaf_name(model->gaf), density);
@@ -828,8 +828,8 @@ static void sweep_lobe(struct objective *o, const struct geometry *g, const stru
 	for (int block = 0; (block + 1) * KERNEL_BLOCK < g->n_samples; block += stride) {
 		const int at = block * KERNEL_BLOCK;
 		const struct kernel_samples slots = {g->q_i + at, g->q_o + at, g->geometric_factor + at, g->row + at};
-		kernel_plain.lobe(gaf[model->gaf], &g1, o->row, &slots, plain);
-		kernel_pick()->lobe(gaf[model->gaf], &g1, o->row, &slots, s);
+		kernel_plain.lobe(gaf[model->gaf], &g1, o->row[1], &slots, plain);
+		kernel_pick()->lobe(gaf[model->gaf], &g1, o->row[1], &slots, s);
 		for (int n = 0; n < KERNEL_BLOCK; n++) {
 			const int i = slots.row[n] / MERL_THETA_D, j = slots.row[n] % MERL_THETA_D, k = g->k[at + n];
 			struct vec3 wi, wo;
@@ -837,7 +837,7 @@ static void sweep_lobe(struct objective *o, const struct geometry *g, const stru
 			/* Smaller ones than a float's D has digits for are known from 0 only. */
 			const double f =
 				cook_torrance_lobe(model, wi, wo) * weight_at(g->criterion.weight, i, j, wi.z, wo.z);
-			const bool known = o->row[slots.row[n]] > 1e-36f && f > 1e-36;
+			const bool known = o->row[1][slots.row[n]] > 1e-36f && f > 1e-36;
 			set_case("%s sigma %g gamma %g entry %d %d %d", ndf_name(model->ndf.class), model->ndf.sigma_x,
 				 model->ndf.gamma, i, j, k);
 			check(row, (double)plain[n], 0,
@@ -900,7 +900,7 @@ static void sweep_scales(const struct geometry *g, const struct fit_options *opt
 		const double E = objective_eval(&o, &shape, 1e-6, true, &linear);
 		check(row_of("float error", "E"), E, 0, (struct expected){0.0, 1.0 + 1e-6, false, NAN, 1.0});
 		for (int c = 0; c < MERL_CHANNELS; c++)
-			check(row_of("float error", "kd, ks"), linear.kd[c] + linear.ks[c], 0,
+			check(row_of("float error", "kd, ks"), linear.kd[c] + linear.coefficient[c][1], 0,
 			      (struct expected){0.0, 2.0, false, NAN, 1.0});
 		objective_free(&o);
 		sample_set_free(&table);

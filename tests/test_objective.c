@@ -95,7 +95,7 @@ static double kernel_error(const struct kernel *kernel, const struct geometry *g
 			   const struct measurement *measurement, const struct cook_torrance *model,
 			   const struct fit_options *o, enum masking_density density)
 {
-	const struct shape shape = {model->ndf.sigma_x, model->ndf.gamma, model->n, 0, 0, 0};
+	const struct shape shape = {.sigma = model->ndf.sigma_x, .gamma = model->ndf.gamma, .ior = model->n};
 	struct objective objective;
 	struct sample_set table;
 	double error = 0, sum = 0;
@@ -107,11 +107,12 @@ static double kernel_error(const struct kernel *kernel, const struct geometry *g
 	for (int c = 0; c < 3; c++) {
 		for (int b = 0; b < table.n_blocks; b++) {
 			const size_t at = (size_t)b * KERNEL_BLOCK;
-			const struct kernel_evaluation look = {model->kd[c] / M_PI, model->ks[c], 0.05, 1e-3};
+			const struct kernel_evaluation look = {{model->kd[c] / M_PI, model->ks[c]}, 0.05, 1e-3};
+			const float *const term[] = {table.w + at, objective.term[1] + at};
 			struct kernel_sums sums;
 
-			kernel->pass(b < table.n_pair_blocks ? 2 : 1, sample_set_value(&table, b, c), table.w + at,
-				     objective.s + at, &look, &sums);
+			kernel->pass(2, b < table.n_pair_blocks ? 2 : 1, sample_set_value(&table, b, c), term, &look,
+				     &sums);
 			error += sums.error;
 		}
 		sum += table.sum[c];
@@ -219,7 +220,9 @@ static void thinned_tables_estimate_the_error(void **state)
 {
 	const struct fit_options o = options_with(GAF_UNCORRELATED, WEIGHT_NONE, BINS_NODE, 90);
 	const struct cook_torrance truth = make_model("std", 0.05, 1.7, 1.6);
-	const struct shape shapes[] = {{0.05, 2, 1.6, 0, 0, 0}, {0.2, 2, 1.2, 0, 0, 0}, {0.01, 2, 20, 0, 0, 0}};
+	const struct shape shapes[] = {{.sigma = 0.05, .gamma = 2, .ior = 1.6},
+				       {.sigma = 0.2, .gamma = 2, .ior = 1.2},
+				       {.sigma = 0.01, .gamma = 2, .ior = 20}};
 	struct measurement measurement = make_table(&truth, 180, BINS_NODE, 0.3);
 	struct geometry geometry;
 	struct sample_set full, thin;

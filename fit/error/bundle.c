@@ -52,6 +52,30 @@ void bundle_second(const struct bundle *b, double second[])
 			second[at] = b->h[i][j];
 }
 
+/* Moves x to the nearest point that keeps the linear constraints, if there are any, and to a float. */
+static void make_feasible(struct bundle *b)
+{
+	const struct bundle_domain *domain = &b->domain;
+	struct least_distance p = {.dims = domain->n};
+
+	for (int k = 0; k < domain->n_linear; k++) {
+		for (int i = 0; i < domain->n; i++)
+			p.normal[p.n_rows][i] = -domain->normal[k][i];
+		p.level[p.n_rows++] = -domain->level[k];
+	}
+	for (int i = 0; i < domain->n; i++) {
+		p.normal[p.n_rows][i] = 1;
+		p.level[p.n_rows++] = domain->lo[i];
+		p.normal[p.n_rows][i] = -1;
+		p.level[p.n_rows++] = -domain->hi[i];
+		p.z[i] = b->x[i];
+	}
+	if (domain->n_linear > 0)
+		least_distance_solve(&p);
+	for (int i = 0; i < domain->n; i++)
+		b->x[i] = clamp((double)(float)p.z[i], domain->lo[i], domain->hi[i]);
+}
+
 void bundle_start(struct bundle *b, const struct bundle_domain *domain, const double start[], const double second[],
 		  double scale, double tolerance, bool certify)
 {
@@ -66,10 +90,12 @@ void bundle_start(struct bundle *b, const struct bundle_domain *domain, const do
 	b->cold = !start;
 	set_second(b, second);
 	b->tau = is_curved(b) ? 0 : WINDOW;
-	/* The table is evaluated in float: ask only at floats. */
 	for (int i = 0; i < domain->n; i++)
-		b->x[i] = b->best[i] =
-			start ? (double)(float)clamp(start[i], domain->lo[i], domain->hi[i]) : domain->lo[i];
+		b->x[i] = start ? start[i] : domain->lo[i];
+	/* The table is evaluated in float: ask only at floats. */
+	if (start)
+		make_feasible(b);
+	memcpy(b->best, b->x, sizeof b->best);
 }
 
 /* By how much rounding may have lifted a cut where the best point is. A cut from afar, where the error is many times the
@@ -119,8 +145,8 @@ static struct whitened whiten(const struct bundle *b, double unit)
 		const double diagonal = fmax(b->h[vi][vi] / unit, 0) + 1e-6 / (width * width);
 
 		for (int j = 0; j < i; j++)
-			w.l[i][j] = alone[j] ? 0
-					     : (b->h[vi][w.variable[j]] / unit - dot(w.l[i], w.l[j], j)) / w.l[j][j];
+			w.l[i][j] =
+				alone[j] ? 0 : (b->h[vi][w.variable[j]] / unit - dot(w.l[i], w.l[j], j)) / w.l[j][j];
 		const double left = diagonal - dot(w.l[i], w.l[i], i), least = ALONE * diagonal;
 
 		alone[i] = left < least;
@@ -187,19 +213,19 @@ static void add_domain(struct least_distance *p, const struct whitened *w, const
 /* The least of slope . d + d H d / 2 over the domain, d from the best point: 0 or less. */
 static double newton_step(const struct bundle *b, double step[])
 {
-	const struct whitened w = whiten(b, 1);
+	const struct whitened w = whiten(b, b->scale);
 	struct least_distance p = {.dims = w.n};
 	double slope[BUNDLE_VARIABLES], least = 0;
 
 	slope_to_white(&w, b->slope, slope);
 	for (int i = 0; i < w.n; i++)
-		p.z[i] = -slope[i];
+		p.z[i] = -slope[i] / b->scale;
 	add_domain(&p, &w, b);
 	least_distance_solve(&p);
 	for (int i = 0; i < w.n; i++)
-		least += p.z[i] * (slope[i] + 0.5 * p.z[i]);
+		least += p.z[i] * (slope[i] / b->scale + 0.5 * p.z[i]);
 	step_from_white(&w, p.z, step);
-	return least;
+	return least * b->scale;
 }
 
 /* What the multipliers of a solved problem prove: a convex combination of the cuts, and of the linear constraints what is
@@ -343,7 +369,9 @@ static bool propose(struct bundle *b, const double newton[], double gain)
 }
 
 /* Corrects the second derivatives so that they explain how the slope changes from the best point to this one (the update
- * of Broyden, Fletcher, Goldfarb and Shanno with Powell's damping), as l1.c does it, and for its reasons. */
+ * of Broyden, Fletcher, Goldfarb and Shanno with Powell's damping): a kink in between becomes a steep curve. But nothing
+ * becomes steeper over a step that matters no more than some tolerances: near enough to it, a kink is infinitely steep
+ * and would hide how far the minimum may still be. */
 static void learn(struct bundle *b, const double slope[])
 {
 	const int n = b->domain.n;
@@ -412,7 +440,8 @@ static bool add_cut(struct bundle *b, double error, const double slope[])
 }
 
 /* At x = lo, all but nothing, the slopes are the sums of the terms. A term that comes to more than twice what is measured
- * is worse than none: where the box goes far beyond that it is cut off, as in l1.c. A first guess gives the first term
+ * is worse than none: where the box goes far beyond that, the error at its far end would have no digit left for what is sought, and it is
+ * cut off. A first guess gives the first term
  * and the others shares of what is measured. */
 static void guess(struct bundle *b, double error, const double slope[])
 {
@@ -421,11 +450,11 @@ static void guess(struct bundle *b, double error, const double slope[])
 		const double whole = slope[i] < 0 ? -error / slope[i] : INFINITY;
 		const double share = i == 0 ? 0.3 : 0.5 / (b->domain.n - 1);
 
-		if (2 * whole < 1e-10 * b->domain.hi[i])
+		if (2 * whole < BUNDLE_FAR * b->domain.hi[i])
 			b->domain.hi[i] = fmax(2 * whole, b->domain.lo[i]);
-		b->x[i] = isfinite(whole) ? (double)(float)clamp(share * whole, b->domain.lo[i], b->domain.hi[i])
-					  : b->domain.lo[i];
+		b->x[i] = isfinite(whole) ? share * whole : b->domain.lo[i];
 	}
+	make_feasible(b);
 }
 
 void bundle_update(struct bundle *b, double error, const double slope[], const double second[])

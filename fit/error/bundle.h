@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* bundle - minimises a convex function of a few variables in a polytope, where an evaluation costs a pass over a table.
  *
- * The function is what l1.h minimises in two variables, sum_j |m_j - x . a_j|, and it is used in the same way:
+ * Here the function is sum_j |m_j - x . a_j|: convex, piecewise linear, nearly smooth when there are many terms. The caller evaluates,
+ * the solver proposes:
  *
  *     bundle_start(&bundle, ...);
  *     while (!bundle.done) {
@@ -25,6 +26,9 @@ enum {
 	BUNDLE_LINEAR = 24,
 	BUNDLE_CUTS = 64
 };
+
+/* A minimum nearer to 0 than this share of the box is found to full accuracy only if the solver begins without `start`. */
+#define BUNDLE_FAR 1e-10
 
 /* struct bundle_domain - lo <= x <= hi, finite, and normal . x <= level for each of the linear constraints. */
 struct bundle_domain {
@@ -54,7 +58,7 @@ struct bundle {
 	struct bundle_cut cut[BUNDLE_CUTS];
 };
 
-/* bundle_start - begins at `start`, moved into the box; NULL: nothing is known, and x = lo is feasible.
+/* bundle_start - begins at `start`, moved into the domain; NULL: nothing is known, and x = lo is feasible.
  * second: the second derivatives of a problem much like this one, or NULL; bundle_second - those that this one ended with. */
 void bundle_start(struct bundle *bundle, const struct bundle_domain *domain, const double start[],
 		  const double second[], double scale, double tolerance, bool certify);
