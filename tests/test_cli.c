@@ -819,6 +819,19 @@ static void within_takes_the_simplest(void **state)
 	      " \"$STDFIT\" gray.binary --ndf ggx --sigma 0.3 --ior 1.5 --max-theta 20 --within 1% -q --resume -o "
 	      "w.csv && cmp w.csv v.csv");
 	expect_code(0);
+	/* A coloured plastic has one ks. */
+	stdfit("synth plastic.binary --ndf ggx --sigma 0.3 --ior 1.5 --kd 0.4,0.1,0.05 --ks 0.6 --noise 0.05");
+	expect_code(0);
+	stdfit("plastic.binary --ndf ggx --sigma 0.3 --ior 1.5 --max-theta 20 --within 0.5%");
+	expect_code(0);
+	table = read_table("stdout");
+	assert_int_equal(table.n_rows, 1);
+	expect_part(table.row[0][RESULT_OPTIONS], "chosen=gray-specular", __LINE__);
+	check_rel(result_number(table.row[0], RESULT_KD_R), 0.4, 1e-2, "kd_r");
+	check_rel(result_number(table.row[0], RESULT_KD_B), 0.05, 1e-2, "kd_b");
+	check_rel(result_number(table.row[0], RESULT_KS_G), 0.6, 2e-2, "ks_g");
+	assert_string_equal(table.row[0][RESULT_KS_R], table.row[0][RESULT_KS_B]);
+	csv_table_free(&table);
 	stdfit("a.binary " CHEAP " --within 1%");
 	expect_code(0);
 	table = read_table("stdout");

@@ -99,6 +99,7 @@ static char *chosen_text(const char *asked, const struct fit_options *all, const
 		bool is;
 		const char *word;
 	} left_out[] = {{chosen->gray && !all->gray, "gray"},
+			{chosen->gray_specular && !all->gray_specular, "gray-specular"},
 			{!chosen->diffuse && all->diffuse, "no-diffuse"},
 			{!chosen->specular && all->specular, "no-specular"},
 			{chosen->specular && chosen->fresnel != all->fresnel, "no-fresnel"},
