@@ -196,6 +196,13 @@ static void bad_files_are_refused(void **state)
 	stdfit("a.binary/under.binary " CHEAP);
 	expect_error(1, "cannot read 'a.binary/under.binary': Not a directory");
 	assert_string_equal(last.out, "");
+	shell("ln -s nowhere bad/link.binary; ln -s round.binary bad/round.binary");
+	stdfit("a.binary bad/link.binary " CHEAP);
+	expect_error(1, "cannot read 'bad/link.binary': No such file or directory");
+	assert_string_equal(last.out, "");
+	stdfit("info bad/round.binary");
+	expect_error(1, "cannot read 'bad/round.binary': Too many levels");
+	assert_string_equal(last.out, "");
 	make_file("bad/empty.binary", sound, 0);
 	expect_bad_file("bad/empty.binary", "cannot read");
 	make_file("bad/seven-bytes.binary", sound, 7);

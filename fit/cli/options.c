@@ -420,14 +420,21 @@ static bool is_input(enum command command, int i, const char *word)
 	return !(command == COMMAND_CONVERT && i > 0) && strcmp(word, "-") != 0;
 }
 
-/* A file that was typed and is not there, before anything is done. -1: all are. */
+/* Whether the file system's answer about an input refuses it before anything is done. Of a file that is there but cannot be
+ * looked at, there are rows that say so; but shares of a list that another host sees as directories would not be the same. */
+static bool is_refused(const struct options *options, int error)
+{
+	return error == ENOENT || error == ENOTDIR || error == ELOOP || options->shard.n > 0;
+}
+
+/* A file that was typed and is not there, or only as a link that leads nowhere. -1: all are. */
 static int check_inputs(const struct options *options)
 {
 	const enum command command = options->command;
 	for (int i = 0; i < options->n_paths; i++) {
 		const char *path = options->path[i];
 		struct stat info;
-		if (!is_input(command, i, path) || lstat(path, &info) == 0 || (errno != ENOENT && errno != ENOTDIR))
+		if (!is_input(command, i, path) || stat(path, &info) == 0 || !is_refused(options, errno))
 			continue;
 		char shown[TEXT_QUOTE_SIZE];
 		const int error = errno;
