@@ -41,7 +41,8 @@ static int merge(char *a, char *b, char *form, char **output)
 	const int code = cmd_merge(form ? 4 : 3, argv, &cancel);
 	capture_end(&err, stderr);
 	capture_end(&out, stdout);
-	PROMISE(code == EXIT_DONE || code == EXIT_FAILED);
+	/* EXIT_USAGE: both files are measurements, whatever their names. */
+	PROMISE(code == EXIT_DONE || code == EXIT_FAILED || code == EXIT_USAGE);
 	PROMISE(code == EXIT_DONE ? err.size == 0 : is_message(err.text));
 	PROMISE((code == EXIT_DONE) == (out.size > 0));
 	*output = out.text;
