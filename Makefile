@@ -69,7 +69,9 @@ long_programs := $(foreach t,$(only_long) $(with_long_cases),$(BUILD)/tests/test
 # Made by the program from its own tables; RUN runs it where it is built for another machine, as in RUN=qemu-aarch64.
 manuals := $(BUILD)/stdfit.1 $(BUILD)/completions/stdfit.bash $(BUILD)/completions/_stdfit
 
+# By hand, where no set-up has said so: what is left out, and the package that brings it.
 all: $(BUILD)/stdfit $(manuals)
+	$(if $(filter 0,$(MAKELEVEL)),@scripts/setup.sh note,@:)
 
 $(BUILD)/stdfit: $(BUILD)/fit/commands/main.o $(lib_objects)
 	$(call quiet,LD)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS)
