@@ -60,7 +60,7 @@ endif
 test_sources := $(wildcard tests/test_*.c)
 test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 # Attacks on inputs, outputs and memory, and fits of hard tables: half of the time of all tests.
-only_long := alloc convert export fetch free_form hostile hostile_names hostile_outputs outputs plot resample slurm stiff suspects
+only_long := alloc convert export fetch free_form hostile hostile_names hostile_outputs outputs plot resample slurm stiff suspects terminal
 # Some cases in check, all in check-long: check.h, case_step().
 with_long_cases := fit objective python scattered_fit
 short_programs := $(filter-out $(only_long:%=$(BUILD)/tests/test_%),$(test_programs))
@@ -69,7 +69,9 @@ long_programs := $(foreach t,$(only_long) $(with_long_cases),$(BUILD)/tests/test
 # Made by the program from its own tables; RUN runs it where it is built for another machine, as in RUN=qemu-aarch64.
 manuals := $(BUILD)/stdfit.1 $(BUILD)/completions/stdfit.bash $(BUILD)/completions/_stdfit
 
+# By hand, where no set-up has said so: what is left out, and the package that brings it.
 all: $(BUILD)/stdfit $(manuals)
+	$(if $(filter 0,$(MAKELEVEL)),@scripts/setup.sh note,@:)
 
 $(BUILD)/stdfit: $(BUILD)/fit/commands/main.o $(lib_objects)
 	$(call quiet,LD)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS)

@@ -110,6 +110,9 @@ static void wrong_usage_is_refused(void **state)
 		{"a.binary --ndf phong", "bad value 'phong' for --ndf: expected one of std, ggx, beckmann"},
 		{"a.binary --ndf ggx,", "bad value 'ggx,' for --ndf"},
 		{"a.binary --ndf ggx,ggx", "twice"},
+		{"a.binary --ndf std --ndf ggx", "--ndf stands there twice"},
+		{"compare a.binary -o x.csv --output y.csv", "--output stands there twice"},
+		{"synth x.binary --kd 1 --kd=1", "--kd stands there twice"},
 		{"a.binary --gaf none",
 		 "bad value 'none' for --gaf: expected one of uncorrelated, correlated, v-groove"},
 		{"a.binary --fresnel x", "for --fresnel"},
@@ -192,6 +195,13 @@ static void bad_files_are_refused(void **state)
 	assert_string_equal(last.out, "");
 	stdfit("a.binary/under.binary " CHEAP);
 	expect_error(1, "cannot read 'a.binary/under.binary': Not a directory");
+	assert_string_equal(last.out, "");
+	shell("ln -s nowhere bad/link.binary; ln -s round.binary bad/round.binary");
+	stdfit("a.binary bad/link.binary " CHEAP);
+	expect_error(1, "cannot read 'bad/link.binary': No such file or directory");
+	assert_string_equal(last.out, "");
+	stdfit("info bad/round.binary");
+	expect_error(1, "cannot read 'bad/round.binary': Too many levels");
 	assert_string_equal(last.out, "");
 	make_file("bad/empty.binary", sound, 0);
 	expect_bad_file("bad/empty.binary", "cannot read");

@@ -132,10 +132,12 @@ static void fits_and_tables_make_sheets(void **state)
 	assert_true(more.width < sheet.width && more.height > sheet.height + 24);
 	image_free(&more);
 	image_free(&sheet);
-	/* And from fits made for the picture. */
+	/* And from fits made for the picture. Without -o the numbers alone. */
 	stdfit("render m.binary " CHEAP " " QUICK);
 	expect_code(0);
+	expect_out("material,ndf,error,rmse,delta_e,ssim\n");
 	expect_out("\nm,ggx,");
+	assert_true(number_at(4) > 0);
 	/* compare shows the same errors beside its own. */
 	stdfit("compare fits.csv --pictures");
 	expect_code(0);
@@ -189,6 +191,9 @@ static void wrong_usage_is_refused(void **state)
 	expect_error(1, "cannot write 'no/such/place.pfm'");
 	stdfit("render m.binary " MODEL " -o no.jpg");
 	expect_error(2, "expected -o FILE.png, -o FILE.pfm or -o -");
+	stdfit("render m.binary " MODEL " " QUICK " --difference");
+	expect_error(2, "--difference needs -o FILE");
+	assert_string_equal(last.out, "");
 	stdfit("render m.binary " MODEL " --light 0,0,0");
 	expect_error(2, "bad value '0,0,0' for --light");
 	stdfit("render m.binary " MODEL " --light 1,2,3,4,5");

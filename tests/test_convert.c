@@ -135,15 +135,15 @@ static void convert_writes_samples_and_tables(void **state)
 	expect_code(0);
 	assert_string_equal(last.err, "");
 	stdfit("convert gray.dat gray.csv");
-	expect_part(last.err, "2 samples; lost: 1 negative left out; 1 at or below the horizon left out\n", __LINE__);
+	expect_part(last.err, "2 samples; lost: left out: 1 negative; 1 at or below the horizon\n", __LINE__);
 	stdfit("convert blue.brdf blue.csv");
 	expect_part(last.err,
-		    "2 samples; lost: 1 not measured; 1 out of gamut, their negative part set to 0; 5 wavelengths "
-		    "became linear sRGB\n",
+		    "2 samples; lost: 1 out of gamut, their negative part set to 0; 5 wavelengths became linear sRGB; "
+		    "left out: 1 not measured\n",
 		    __LINE__);
 	stdfit("convert --gamut mask blue.brdf blue.csv");
 	expect_part(last.err,
-		    "1 samples; lost: 1 not measured; 1 out of gamut left out; 5 wavelengths became linear sRGB\n",
+		    "1 samples; lost: 5 wavelengths became linear sRGB; left out: 1 not measured; 1 out of gamut\n",
 		    __LINE__);
 	stdfit("convert --quantity reflectance_factor gray.dat factor.csv -q");
 	shell("tail -n 1 factor.csv | cut -d, -f5");
@@ -162,12 +162,12 @@ static void info_tells_what_is_in_a_file(void **state)
 	expect_out("format               alta\n");
 	expect_out("symmetry             isotropic\n");
 	expect_out("channels             1\n");
-	expect_out("left_out             negative: 1; at or below the horizon: 1\n");
+	expect_out("left_out             1 negative; 1 at or below the horizon\n");
 	expect_out("suspects             out of gamut, set to 0: 1\n");
 	expect_out("channels             5\n");
-	expect_out("left_out             not measured: 1\n");
+	expect_out("left_out             1 not measured\n");
 	stdfit("info --gamut mask blue.brdf --table");
-	expect_out("left_out             not measured: 1; out of gamut: 1\n");
+	expect_out("left_out             1 not measured; 1 out of gamut\n");
 }
 
 static void a_directory_has_the_known_files(void **state)

@@ -92,7 +92,8 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "material, with their differences in false colours if there is one material only. The models\n"
 		 "are fitted, taken from a result table (--from, or FILE.csv as the only path: the files it\n"
 		 "names), or given (--kd, --ks, ...). Reports how different model and table look: rmse of linear\n"
-		 "values, delta_e the mean CIEDE2000, ssim the structural similarity.\n"},
+		 "values, delta_e the mean CIEDE2000, ssim the structural similarity; these numbers are all that is\n"
+		 "made without -o.\n"},
 	[COMMAND_PLOT] =
 		{"plot", "PATH...", "fits, or the course of searches, as plots by gnuplot",
 		 "Takes a result table (FILE.csv), or fits measurements or directories. Writes into the directory\n"
@@ -327,6 +328,9 @@ static int spec_of_letter(enum command command, int letter)
 static int take_option(struct options *options, int i, const char *text)
 {
 	struct error error;
+	/* The earlier value would be ignored; a switch says the same again. */
+	if (options->given[i] && option_specs[i].argument)
+		return options_usage(options->command, "--%s stands there twice", option_specs[i].name);
 	options->given[i] = true;
 	if (option_parse(options, &option_specs[i], text, &error) == STATUS_OK)
 		return -1;
@@ -416,14 +420,21 @@ static bool is_input(enum command command, int i, const char *word)
 	return !(command == COMMAND_CONVERT && i > 0) && strcmp(word, "-") != 0;
 }
 
-/* A file that was typed and is not there, before anything is done. -1: all are. */
+/* Whether the file system's answer about an input refuses it before anything is done. Of a file that is there but cannot be
+ * looked at, there are rows that say so; but shares of a list that another host sees as directories would not be the same. */
+static bool is_refused(const struct options *options, int error)
+{
+	return error == ENOENT || error == ENOTDIR || error == ELOOP || options->shard.n > 0;
+}
+
+/* A file that was typed and is not there, or only as a link that leads nowhere. -1: all are. */
 static int check_inputs(const struct options *options)
 {
 	const enum command command = options->command;
 	for (int i = 0; i < options->n_paths; i++) {
 		const char *path = options->path[i];
 		struct stat info;
-		if (!is_input(command, i, path) || lstat(path, &info) == 0 || (errno != ENOENT && errno != ENOTDIR))
+		if (!is_input(command, i, path) || stat(path, &info) == 0 || !is_refused(options, errno))
 			continue;
 		char shown[TEXT_QUOTE_SIZE];
 		const int error = errno;

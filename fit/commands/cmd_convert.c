@@ -38,15 +38,16 @@ static void add_count(char text[LOST_SIZE], size_t n, const char *what)
 static void add_left_out(char text[LOST_SIZE], const struct measurement *measurement, enum gamut gamut)
 {
 	const struct scattered *s = measurement->scattered;
-	add_count(text, s ? measurement->n_negative : 0, "negative left out");
-	add_count(text, s ? measurement->n_nonfinite : 0, "non-finite left out");
-	add_count(text, measurement->n_missing, "not measured");
-	add_count(text, measurement->n_below_horizon, "at or below the horizon left out");
-	add_count(text, measurement->n_out_of_gamut,
-		  gamut == GAMUT_MASK ? "out of gamut left out" : "out of gamut, their negative part set to 0");
+	char left_out[MEASUREMENT_LEFT_OUT], words[LOST_SIZE / 2];
+	if (gamut == GAMUT_CLIP)
+		add_count(text, measurement->n_out_of_gamut, "out of gamut, their negative part set to 0");
 	if (s && measurement->n_channels > MERL_CHANNELS)
 		add_count(text, (size_t)measurement->n_channels,
 			  s->gray ? "wavelengths became their mean" : "wavelengths became linear sRGB");
+	if (!*measurement_left_out(measurement, LEFT_OUT_ALL, gamut == GAMUT_MASK, left_out))
+		return;
+	snprintf(words, sizeof words, "left out: %s", left_out);
+	add(text, words);
 }
 
 static enum status write_samples(const struct options *options, const struct measurement *measurement,

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit fit - MERL files to a result table. */
 #include "data_readers/atomic_file.h"
-#include "data_readers/text_quote.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/outputs.h"
 #include "fit/cli/report.h"
@@ -12,7 +11,6 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 struct sink {
 	const struct options *options;
@@ -159,24 +157,12 @@ static int run_traced(struct sink *sink, struct batch *batch)
 	return code == EXIT_DONE ? EXIT_FAILED : code;
 }
 
-/* As files_collect(). Where something is not there (a disk that is not mounted), the list and so the shares would not be
- * those that the others fit: then there are none. */
+/* As files_collect(). Where a directory cannot be read, the list and so the shares would not be those that the others fit:
+ * then there are none. */
 static int collect(const struct options *options, struct files *files)
 {
-	const bool sharing = options->shard.n > 0;
-	int missing = 0;
-	*files = (struct files){0};
-	for (int i = 0; i < options->n_paths && sharing; i++)
-		if (access(options->path[i], F_OK)) {
-			char name[TEXT_QUOTE_SIZE];
-			text_quote(options->path[i], name, sizeof name);
-			report_error("cannot read '%s': %s", name, strerror(errno));
-			missing++;
-		}
-	if (missing)
-		return missing;
 	const int bad = files_collect(files, options->path, options->n_paths, options->recursive, options->cancel);
-	if (sharing && bad > 0)
+	if (options->shard.n > 0 && bad > 0)
 		files_free(files);
 	return bad;
 }

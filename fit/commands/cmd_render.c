@@ -267,6 +267,8 @@ static int check_paths(struct render *render)
 static int check_picture(struct render *render, char **renamed)
 {
 	render->picture = render->options->picture;
+	if (!render->picture && render->options->difference)
+		return options_usage(COMMAND_RENDER, "--difference needs -o FILE, the picture to show it in");
 	if (!render->picture)
 		return -1;
 	if (outputs_standard(render->picture)) {

@@ -208,7 +208,7 @@ static const struct stage stages[SEARCH_LEVELS] = {
 static bool near(const struct search *s, const struct space_point *a, const struct space_point *b)
 {
 	for (int d = 0; d < s->space.dims; d++)
-		if (fabs(a->x[d] - b->x[d]) >= 0.02 * (s->space.hi[d] - s->space.lo[d]))
+		if (fabs(a->x[d] - b->x[d]) >= 0.01 * (s->space.hi[d] - s->space.lo[d]))
 			return false;
 	return true;
 }

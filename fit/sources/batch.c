@@ -184,7 +184,8 @@ static enum status process(struct run *run, struct batch_file *file)
 		if (fit.n_ndf > 0) {
 			suspects_find(&measurement, &fit.criterion, &file->suspects);
 			suspects_words(&file->suspects, file->words);
-			measurement_left_out(&measurement, reading.gamut == GAMUT_MASK, file->left_out);
+			measurement_left_out(&measurement, LEFT_OUT_VALUES, reading.gamut == GAMUT_MASK,
+					     file->left_out);
 			status = fit_samples(run, file, &measurement, &fit);
 		}
 		measurement_free(&measurement);

@@ -3,6 +3,7 @@
 #include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/export/model_json.h"
+#include "fit/results/contradiction.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -160,11 +161,29 @@ static enum status no_row(const struct options *options, const char *material, s
 			 wanted_name);
 }
 
+/* The rows of --from. Which of two that contradict each other is meant, only --row can say. */
+static enum status read_from(const struct options *options, struct csv_table *rows, struct error *error)
+{
+	*rows = csv_table_make(result_columns, RESULT_COLUMNS);
+	const enum status status = csv_table_read(rows, options->from, RESULT_SAMPLES, NULL, error);
+	return status != STATUS_OK || options->row ? status : contradiction_check(rows, options->from, error);
+}
+
+enum status model_source_check_rows(const struct options *options, struct error *error)
+{
+	struct csv_table rows;
+	if (model_source_kind(options) != SOURCE_ROWS || is_json(options->from))
+		return STATUS_OK;
+	const enum status status = read_from(options, &rows, error);
+	csv_table_free(&rows);
+	return status;
+}
+
 static enum status read_rows(const struct options *options, const char *material, struct model_source *source,
 			     struct error *error)
 {
-	struct csv_table rows = csv_table_make(result_columns, RESULT_COLUMNS);
-	enum status status = csv_table_read(&rows, options->from, RESULT_SAMPLES, NULL, error);
+	struct csv_table rows;
+	enum status status = read_from(options, &rows, error);
 	for (size_t i = 0; i < rows.n_rows && status == STATUS_OK; i++)
 		if (wanted(options, rows.row[i], i, material))
 			status = add_row(options, rows.row[i], i + 1, source, error);

@@ -66,6 +66,10 @@ enum status shown_columns_plan(struct shown_columns *columns, const struct optio
 			columns->ndf[columns->n++] = ndf_name(options->fit.ndf[i]);
 		return STATUS_OK;
 	}
+	/* What is wrong with the table as a whole is told once. */
+	const enum status whole = model_source_check_rows(options, error);
+	if (whole != STATUS_OK)
+		return whole;
 	for (size_t i = 0; i < files->n; i++) {
 		struct model_source source;
 		struct shown_models shown;

@@ -30,8 +30,8 @@ struct shown_columns {
 void shown_columns_find(const struct shown_columns *columns, const struct shown_models *shown, int column[SHOWN_MAX]);
 
 /* shown_columns_plan - the columns for all models of the files: those of the options' NDFs, or what the rows of --from need.
- * Rows are read beforehand for that. What is wrong with them is left to be reported later, unless memory ran out, which may
- * pass: STATUS_NO_MEMORY. by_path: see shown_models_choose(). */
+ * Rows are read beforehand for that. What is wrong with one of them is left to be reported later, unless memory ran out, which
+ * may pass: STATUS_NO_MEMORY. Errors of the table as a whole: see model_source_check_rows(). by_path: see shown_models_choose(). */
 MUST_CHECK enum status shown_columns_plan(struct shown_columns *columns, const struct options *options,
 					  const struct files *files, bool by_path, struct error *error);
 
