@@ -52,6 +52,9 @@ static void rows_have_axes(void **state)
 	check_abs(result_number(row, RESULT_ANGLE), 20, 1, "angle");
 	assert_true(error < result_number(row, RESULT_ERROR_ISOTROPIC));
 	assert_non_null(strstr(row[RESULT_OPTIONS], "sigma=free anisotropic=yes angle=free"));
+	/* Its largest albedo lies between what the terms allow. */
+	check_between(result_number(row, RESULT_ALBEDO_G), 0.12, 0.75, "albedo");
+	assert_string_equal(row[RESULT_ENERGY], "ok");
 	/* The model of the row is the one that was fitted. */
 	stdfit("eval brushed.csv --from fits.csv --json");
 	expect_code(0);
@@ -68,6 +71,17 @@ static void rows_have_axes(void **state)
 	assert_string_equal(before, after);
 	free(before);
 	free(after);
+}
+
+static void a_readable_table_has_axes(void **state)
+{
+	(void)state;
+	stdfit("fit brushed.csv --anisotropic --ndf ggx --sigma 0.3,0.1 --angle 20 -q --table");
+	expect_code(0);
+	expect_out("  (sigma_x 0.3, sigma_y 0.1, angle 20)\n");
+	stdfit("fit brushed.csv --ndf ggx --sigma 0.3 -q --table");
+	expect_code(0);
+	assert_null(strstr(last.out, "sigma_x"));
 }
 
 static void an_isotropic_row_has_none(void **state)
@@ -225,6 +239,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(rows_have_axes),
+		cmocka_unit_test(a_readable_table_has_axes),
 		cmocka_unit_test(an_isotropic_row_has_none),
 		cmocka_unit_test(eval_takes_axes),
 		cmocka_unit_test(synth_writes_samples_with_axes),

@@ -206,6 +206,14 @@ static void print_remark(FILE *file, const char *status)
 	}
 }
 
+/* The roughness along both axes, of which the column sigma has the geometric mean. */
+static void print_axes(FILE *file, char *const *row)
+{
+	const double x = result_number(row, RESULT_SIGMA_X), y = result_number(row, RESULT_SIGMA_Y);
+	if (!isnan(x) && !isnan(y))
+		fprintf(file, "  (sigma_x %.5g, sigma_y %.5g, angle %.4g)", x, y, result_number(row, RESULT_ANGLE));
+}
+
 /* A terminal too narrow for all columns gets the factors on a line of their own. */
 static bool is_narrow(FILE *file)
 {
@@ -245,6 +253,7 @@ static void print_fit(FILE *file, char *const *row, bool narrow)
 	fprintf(file, narrow ? "  ks %-20s" : "  %-20s", rgb_text(text, row, RESULT_KS_R));
 	text_quote(row[RESULT_AT_BOUND], text, sizeof text);
 	fprintf(file, "%s%s", !*text ? "" : narrow ? "\n    at bound: " : "  ", text);
+	print_axes(file, row);
 	print_remark(file, row[RESULT_STATUS]);
 	if (!strcmp(row[RESULT_ENERGY], "gain"))
 		fputs("  (sends back more light than it gets)", file);
