@@ -215,3 +215,8 @@ enum status measurement_fill(struct measurement *measurement, enum bins bins, in
 	*measurement = table;
 	return STATUS_OK;
 }
+
+enum status measurement_fill_isotropic(struct measurement *measurement, enum bins bins, int threads)
+{
+	return measurement_turns(measurement) ? STATUS_OK : measurement_fill(measurement, bins, threads);
+}

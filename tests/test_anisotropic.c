@@ -109,6 +109,34 @@ static void eval_takes_axes(void **state)
 	assert_null(strstr(last.out, "\"error_none\": 0.0"));
 }
 
+/* Measured and model: one picture with the right axes, from samples and from the interpolant of an RGL file. */
+static void spheres_of_samples_turn(void **state)
+{
+	(void)state;
+#define TURNED "--ndf ggx --sigma 0.4,0.15 --kd 0.3,0.1,0.05 --ks 0.5 "
+#define SPHERE " --size 24 --samples 8 --json --angle "
+	stdfit("synth turned.csv " TURNED "--angle 25");
+	stdfit("export --format bsdf-rgb -o turned.bsdf --accuracy 12 -q " TURNED "--angle 25");
+	expect_code(0);
+	for (int i = 0; i < 2; i++) {
+		const char *const command[] = {"render turned.csv " TURNED SPHERE, "render turned.bsdf " TURNED SPHERE};
+		double delta_e[2];
+
+		for (int wrong = 0; wrong < 2; wrong++) {
+			char arguments[160];
+
+			snprintf(arguments, sizeof arguments, "%s %d", command[i], wrong ? -25 : 25);
+			stdfit(arguments);
+			expect_code(0);
+			const char *at = strstr(last.out, "\"delta_e\": ");
+			assert_non_null(at);
+			delta_e[wrong] = strtod(at + 11, NULL);
+		}
+		check_between(delta_e[0], 0, 0.6, command[i]);
+		assert_true(delta_e[1] > 2 * delta_e[0]);
+	}
+}
+
 static void what_has_no_axes_is_refused(void **state)
 {
 	(void)state;
@@ -245,6 +273,7 @@ int main(void)
 		cmocka_unit_test(synth_writes_samples_with_axes),
 		cmocka_unit_test(synth_knows_its_solid_angles),
 		cmocka_unit_test(a_fit_finds_what_synth_wrote),
+		cmocka_unit_test(spheres_of_samples_turn),
 		cmocka_unit_test(what_has_no_axes_is_refused),
 	};
 

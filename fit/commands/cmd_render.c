@@ -126,8 +126,8 @@ static enum status show_source(struct render *render, const char *path, struct m
 		status = result_check_input(shown.model[i]->input, &source->measurement, path, error);
 	if (status != STATUS_OK)
 		return status;
-	status = measurement_fill(&source->measurement, shown.model[0]->fit.criterion.bins,
-				  render->options->fit.threads);
+	status = measurement_fill_isotropic(&source->measurement, shown.model[0]->fit.criterion.bins,
+					    render->options->fit.threads);
 	if (status == STATUS_OK)
 		status = show_models(render, path, &source->measurement, &shown);
 	if (status == STATUS_OK)
