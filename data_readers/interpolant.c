@@ -14,11 +14,12 @@ enum {
 	NEIGHBOURS = 4, /* the last of these tells how dense entries lie */
 };
 
-#define FAR 40.0  /* no entry reaches farther than this */
-#define NEAR 1e-4 /* entries within this of a point are at it */
-#define CELL 0.5  /* half a cell of the table: always near */
-#define REACH 1.5 /* times the distance to the fourth neighbour */
-#define LOOK 2.0  /* times the reach: how far entries to average may be */
+#define FAR 40.0   /* no entry reaches farther than this */
+#define NEAR 1e-4  /* entries within this of a point are at it */
+#define APART 0.05 /* entries nearer than this to another are one with it, as to how dense they lie */
+#define CELL 0.5   /* half a cell of the table: always near */
+#define REACH 1.5  /* times the distance to the fourth neighbour */
+#define LOOK 2.0   /* times the reach: how far entries to average may be */
 #define DEGREES (180 / M_PI)
 
 /* Entries by their coordinates, as a tree: the middle one divides the others along an axis. */
@@ -128,6 +129,7 @@ struct query {
 	int n_axes;
 	int side; /* bit a: those with x[a] at or above the point's, else below it; -1: all */
 	size_t n, max;
+	double least; /* square of the smallest one: what is at the point is left out; 0: none */
 	double bound; /* square of the largest distance of interest */
 	double distance[AROUND];
 	const struct place *found[AROUND];
@@ -148,7 +150,7 @@ static void consider(struct query *q, const struct place *p)
 		const double d = (double)p->x[a] - (double)q->x[a];
 		distance += d * d;
 	}
-	if (distance >= q->bound || !is_on_side(q, p))
+	if (distance >= q->bound || distance < q->least || !is_on_side(q, p))
 		return;
 	size_t at = q->n < q->max ? q->n++ : q->n - 1;
 	for (; at > 0 && q->distance[at - 1] > distance; at--) {
@@ -191,7 +193,7 @@ static int axes_of(const struct interpolant *ip)
 	return ip->turns ? TURNED : AXES;
 }
 
-/* How far the surroundings of each entry reach. Equal ones are one for this. */
+/* How far the surroundings of each entry reach. Those at the same place are no neighbours. */
 static void find_reach(const struct interpolant *ip, int threads)
 {
 #pragma omp parallel for num_threads(threads)
@@ -199,7 +201,8 @@ static void find_reach(const struct interpolant *ip, int threads)
 		struct query q = {.x = ip->place[p].x,
 				  .n_axes = axes_of(ip),
 				  .side = -1,
-				  .max = NEIGHBOURS + 1,
+				  .max = NEIGHBOURS,
+				  .least = APART * APART,
 				  .bound = FAR * FAR};
 		search(&q, ip->place, ip->n);
 		ip->place[p].reach = (float)(CELL + REACH * sqrt(q.n ? q.distance[q.n - 1] : 0));
@@ -272,6 +275,7 @@ struct interpolated interpolant_at(const struct interpolant *ip, struct vec3 wi,
 	const double reach = (double)nearest.found[0]->reach, at_point = NEAR * NEAR;
 	const double bound = LOOK * LOOK * fmax(reach * reach, nearest.distance[0]);
 	v.inside = nearest.distance[0] <= reach * reach;
+	v.distance = sqrt(nearest.distance[0]);
 	if (nearest.distance[0] <= at_point) {
 		while (nearest.n > 1 && nearest.distance[nearest.n - 1] > at_point)
 			nearest.n--;

@@ -29,7 +29,8 @@ void interpolant_free(struct interpolant *interpolant);
 /* struct interpolated - a sum of weighted values. */
 struct interpolated {
 	double sum[MERL_CHANNELS], weight;
-	bool inside; /* of what was measured */
+	bool inside;     /* of what was measured */
+	double distance; /* of the nearest entry, in the coordinates */
 };
 
 /* interpolant_at - about a pair of directions above the horizon; not of a file with its own interpolant. */
