@@ -143,7 +143,7 @@ static void convert_writes_samples_and_tables(void **state)
 		    __LINE__);
 	stdfit("convert --gamut mask blue.brdf blue.csv");
 	expect_part(last.err,
-		    "1 samples; lost: 1 not measured; 1 out of gamut left out; 5 wavelengths became linear sRGB\n",
+		    "1 sample; lost: 1 not measured; 1 out of gamut left out; 5 wavelengths became linear sRGB\n",
 		    __LINE__);
 	stdfit("convert --quantity reflectance_factor gray.dat factor.csv -q");
 	shell("tail -n 1 factor.csv | cut -d, -f5");

@@ -82,6 +82,7 @@ static enum status convert(const struct options *options, struct error *error)
 {
 	const struct read_options reading = options_reading(options, options->fit.threads);
 	const bool as_table = outputs_end_with(options->path[1], ".binary");
+	const char *const one = as_table ? "entry" : "sample", *const many = as_table ? "entries" : "samples";
 	struct measurement measurement;
 	char lost[LOST_SIZE] = "";
 	size_t n = 0;
@@ -91,7 +92,7 @@ static enum status convert(const struct options *options, struct error *error)
 	status = (as_table ? write_table : write_samples)(options, &measurement, lost, &n, error);
 	measurement_free(&measurement);
 	if (status == STATUS_OK && !options->quiet)
-		fprintf(stderr, "%zu %s; lost: %s\n", n, as_table ? "entries of the table" : "samples",
+		fprintf(stderr, "%zu %s%s; lost: %s\n", n, n == 1 ? one : many, as_table ? " of the table" : "",
 			lost[0] ? lost : "nothing");
 	return status;
 }
