@@ -55,6 +55,12 @@ struct measurement {
 	size_t n_out_of_gamut;       /* scattered: entries whose colour has a negative part in linear sRGB */
 };
 
+/* measurement_turns - whether the sample's azimuth counts: scattered entries that are not isotropic. */
+static inline bool measurement_turns(const struct measurement *measurement)
+{
+	return measurement->scattered && measurement->scattered->symmetry != SYMMETRY_ISOTROPIC;
+}
+
 /* symmetry_name - "isotropic", "plane", "anisotropic". */
 const char *symmetry_name(enum symmetry symmetry);
 /* symmetry_find - the reverse; STATUS_DOMAIN, *symmetry untouched, for another name. */

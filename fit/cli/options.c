@@ -79,13 +79,17 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "which each reflects, its density, and its weight: the mean of the weights is the directional\n"
 		 "albedo of the lobe without its Fresnel term.\n"},
 	[COMMAND_CONVERT] =
-		{"convert", "IN OUT", "a measurement as CSV of samples or as a MERL file",
+		{"convert", "IN OUT", "a measurement as CSV of samples, as a MERL or an RGL file",
 		 "Writes a measurement of any format as OUT.csv, samples in linear sRGB or gray with the solid angle\n"
 		 "that each stands for, or as OUT.binary, a MERL file: interpolated, -1 where nothing was measured,\n"
-		 "with the mean of both orders of wi and wo unless --phi 360. One line tells what was lost.\n"},
-	[COMMAND_SYNTH] = {"synth", "OUT.binary", "write a MERL file of a model",
-			   "Writes the table that an ideal measurement of the model would give; -1 below the\n"
-			   "horizon.\n"},
+		 "with the mean of both orders of wi and wo unless --phi 360; or as OUT.bsdf, an RGL file, which "
+		 "pbrt-v4\n"
+		 "and Mitsuba 3 read as measured. One line tells what was lost.\n"},
+	[COMMAND_SYNTH] =
+		{"synth", "OUT", "write a measurement of a model: a MERL file, or a CSV of samples",
+		 "Writes the table that an ideal measurement of the model would give; -1 below the horizon. OUT.csv\n"
+		 "gets samples instead, wi on a grid and wo by half vectors around the mirror direction: anisotropic\n"
+		 "models (--sigma SX,SY) need these.\n"},
 	[COMMAND_RENDER] =
 		{"render", "PATH...", "spheres of measured materials beside those of their models, as PNG",
 		 "Renders a sphere of each measured table and of each model of it in the same light, one row a\n"

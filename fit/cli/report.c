@@ -251,6 +251,17 @@ static void print_status(FILE *file, const char *status, bool narrow)
 	print_remark(file, remark, narrow);
 }
 
+/* The roughness along both axes, of which the column sigma has the geometric mean. */
+static void print_axes(FILE *file, char *const *row, bool narrow)
+{
+	const double x = result_number(row, RESULT_SIGMA_X), y = result_number(row, RESULT_SIGMA_Y);
+	char text[SHOWN_SIZE];
+	if (isnan(x) || isnan(y))
+		return;
+	snprintf(text, sizeof text, "(sigma_x %.5g, sigma_y %.5g, angle %.4g)", x, y, result_number(row, RESULT_ANGLE));
+	print_remark(file, text, narrow);
+}
+
 /* The columns of a table of fits; of its names, at least: a wider terminal shares the rest between them and remarks. */
 enum { FITS_WIDTH = 126, FITS_NAME = 22 };
 
@@ -297,6 +308,7 @@ static void print_fit(FILE *file, char *const *row, bool narrow)
 	snprintf(bound, sizeof bound, "%s%s", narrow ? "at bound: " : "", text);
 	if (*text)
 		print_remark(file, bound, narrow);
+	print_axes(file, row, narrow);
 	print_status(file, row[RESULT_STATUS], narrow);
 	if (!strcmp(row[RESULT_ENERGY], "gain"))
 		print_remark(file, "(sends back more light than it gets)", narrow);

@@ -159,8 +159,9 @@ static enum status inspect(struct csv_table *table, const struct options *option
 	enum status status = measurement_read(path, &reading, &measurement, error);
 	if (status != STATUS_OK)
 		return status;
-	suspects_find(&measurement, &options->fit.criterion, &suspects);
-	status = census_take(&measurement, options->fit.criterion.bins, &census);
+	status = suspects_find(&measurement, &options->fit.criterion, &suspects);
+	if (status == STATUS_OK)
+		status = census_take(&measurement, options->fit.criterion.bins, &census);
 	if (status == STATUS_OK)
 		status = add_file(table, path, &measurement, &census, options->gamut, &suspects);
 	if (status != STATUS_OK)

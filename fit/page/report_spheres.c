@@ -32,7 +32,8 @@ enum status report_spheres(const char *path, const struct material_data *data, c
 	struct sheet sheet;
 	for (int f = 0; f < data->n; f++)
 		model[f] = (struct pictures_model){&data->fit[f].model, data->fit[f].error};
-	enum status status = pictures_render(&data->measurement, data->fit[0].options.criterion.bins, model, data->n,
+	const struct measurement *measurement = data->turned.scattered ? &data->turned : &data->measurement;
+	enum status status = pictures_render(measurement, data->fit[0].options.criterion.bins, model, data->n,
 					     SAMPLING_VISIBLE, environment, &sphere, &pictures);
 	if (status != STATUS_OK)
 		return error_set(error, status, "cannot render: %s", status_str(status));

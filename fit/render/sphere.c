@@ -77,13 +77,25 @@ struct frame {
 	struct vec3 x, y, z;
 };
 
-/* Materials are isotropic: any x and y will do. */
+static struct vec3 cross(struct vec3 a, struct vec3 b)
+{
+	return (struct vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/* x to the right and y to the upper pole, at which x is to the right, too. */
+static struct frame frame_along_parallels(struct vec3 n)
+{
+	const double length = hypot(n.x, n.z);
+	const struct vec3 x = length > 0 ? (struct vec3){n.z / length, 0, -n.x / length} : (struct vec3){1, 0, 0};
+	return (struct frame){x, cross(n, x), n};
+}
+
+/* Where the material is isotropic any x and y will do. */
 static struct frame frame_of(struct vec3 n)
 {
 	const struct vec3 aside = fabs(n.y) < 0.9 ? (struct vec3){0, 1, 0} : (struct vec3){1, 0, 0};
 	const struct vec3 x = vec3_unit(vec3_sub(aside, vec3_scale(n, vec3_dot(aside, n))));
-	const struct vec3 y = {n.y * x.z - n.z * x.y, n.z * x.x - n.x * x.z, n.x * x.y - n.y * x.x};
-	return (struct frame){x, y, n};
+	return (struct frame){x, cross(n, x), n};
 }
 
 static struct vec3 to_frame(const struct frame *frame, struct vec3 w)
@@ -158,7 +170,8 @@ static bool add_sample(const struct scene *scene, int x, int y, const double u[D
 	const double z2 = 1 - right * right - up * up;
 	if (z2 < SURFACE_HORIZON * SURFACE_HORIZON)
 		return false;
-	struct point at = {.frame = frame_of((struct vec3){right, up, sqrt(z2)})};
+	const struct vec3 normal = {right, up, sqrt(z2)};
+	struct point at = {.frame = scene->options->tangents ? frame_along_parallels(normal) : frame_of(normal)};
 	at.view = surface_view(scene->surface, to_frame(&at.frame, (struct vec3){0, 0, 1}));
 	add_point_lights(scene, &at, sum);
 	if (scene->environment->map.rgb)

@@ -19,6 +19,7 @@ struct sphere_options {
 	int size;    /* width and height of the picture, pixels */
 	int samples; /* per pixel; each takes a direction from the light and one from the surface */
 	uint64_t seed;
+	bool tangents; /* the surface's x points to the right, along the parallels, y to the upper pole; else anywhere */
 	enum estimator estimator;
 	int threads;               /* change no result */
 	const atomic_bool *cancel; /* stops when it becomes true; may be NULL */

@@ -182,11 +182,12 @@ static enum status process(struct run *run, struct batch_file *file)
 			drop_known(run->batch, &source, &fit);
 		file->kept = fit.n_ndf == 0;
 		if (fit.n_ndf > 0) {
-			suspects_find(&measurement, &fit.criterion, &file->suspects);
+			status = suspects_find(&measurement, &fit.criterion, &file->suspects);
 			suspects_words(&file->suspects, file->words);
 			measurement_left_out(&measurement, LEFT_OUT_VALUES, reading.gamut == GAMUT_MASK,
 					     file->left_out);
-			status = fit_samples(run, file, &measurement, &fit);
+			status = status == STATUS_OK ? fit_samples(run, file, &measurement, &fit)
+						     : error_set(&file->error, status, "%s", status_str(status));
 		}
 		measurement_free(&measurement);
 		if (status != STATUS_OK && status != STATUS_INTERRUPTED) {
