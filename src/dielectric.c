@@ -2,9 +2,14 @@
 #include "src/dielectric.h"
 #include "src/vndf.h"
 
+bool dielectric_takes(double n)
+{
+	return n >= 1.0 / DIELECTRIC_INDEX_MAX && n <= DIELECTRIC_INDEX_MAX && n != 1.0;
+}
+
 enum status dielectric_init(struct dielectric *dielectric, const struct ndf *ndf, enum gaf gaf, double n)
 {
-	if (!(n >= 1.0 / DIELECTRIC_INDEX_MAX && n <= DIELECTRIC_INDEX_MAX) || n == 1.0)
+	if (!dielectric_takes(n))
 		return STATUS_DOMAIN;
 	if (gaf == GAF_V_GROOVE)
 		return STATUS_UNSUPPORTED;

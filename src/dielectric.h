@@ -21,6 +21,9 @@
 /* Domain of the relative index, either way. */
 #define DIELECTRIC_INDEX_MAX 1e50
 
+/* dielectric_takes - whether n is a relative index for dielectric_init(). */
+bool dielectric_takes(double n);
+
 /* struct dielectric - filled by dielectric_init(), then only read. */
 struct dielectric {
 	struct cook_torrance side[2]; /* the reflecting model as seen from above, and from below */
