@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/render/sphere.h"
+#include "src/splitmix.h"
 #include <gsl/gsl_qrng.h>
 #include <math.h>
 #include <stdlib.h>
@@ -16,13 +17,9 @@ struct scene {
 	uint32_t (*point)[DIMENSIONS]; /* per sample: bits behind the point, before the pixel's scrambling */
 };
 
-/* Splitmix64's mixing of bits. */
 static uint64_t mix(uint64_t x)
 {
-	x += 0x9e3779b97f4a7c15u;
-	x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-	x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-	return x ^ (x >> 31);
+	return splitmix_bits(&x);
 }
 
 /* Bits to be changed in each of a pixel's numbers. All the intervals that the points fill evenly stay so. */
