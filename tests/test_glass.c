@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Spheres of rough glass: white furnaces, estimators against each other, the smooth limit, and the command. */
+/* Spheres of rough glass: white furnaces, estimators against each other, the smooth limit. */
 #include "chi_square.h"
 #include "fit/render/sphere.h"
-#include "run_program.h"
 
 /* A map of 32 x 16 texels with the radiance of rule(texel). */
 static struct environment light_of(float (*rule)(int x, int y, int channel))
@@ -33,7 +32,7 @@ static float above(int x, int y, int channel)
 
 static float spotted(int x, int y, int channel)
 {
-	uint64_t seed = (uint64_t)(x + 32 * y);
+	uint64_t seed = (uint64_t)x + 32 * (uint64_t)y;
 	const double u = uniform(&seed);
 	return u < 0.5 ? 0 : (float)(pow(u, 6) * (1 + channel));
 }
