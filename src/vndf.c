@@ -166,10 +166,13 @@ struct vec3 vndf_sample_inside(const struct ndf *ndf, struct vec3 wi, double u1,
 	const struct scaled_slopes s = sample_slopes(ndf, wi.z / length, r / length, inside(u1), inside(u2));
 	struct vec3 m = vec3_unit((struct vec3){-sigma_x * (cos_phi * s.x - sin_phi * s.y),
 						-sigma_y * (sin_phi * s.x + cos_phi * s.y), s.one});
-	m.z = m.z < NDF_COS_MIN ? NDF_COS_MIN : m.z;
+	m.z = ndf_cos(m);
 	/* The rounding of m can turn the very last bit of wi.m. */
 	const double cos_d = vec3_dot(wi, m);
-	return ndf_from_axes(ndf, cos_d < 0.0 ? vec3_sub(m, vec3_scale(wi, 2.0 * cos_d)) : m);
+	if (cos_d < 0.0)
+		m = vec3_sub(m, vec3_scale(wi, 2.0 * cos_d));
+	m.z = ndf_cos(m);
+	return ndf_from_axes(ndf, m);
 }
 
 struct vec3 vndf_sample(const struct ndf *ndf, struct vec3 wi, double u1, double u2)
