@@ -286,6 +286,65 @@ static void an_interrupt_leaves_no_picture(void **state)
 	assert_false(is_there("never.pfm"));
 }
 
+/* Glass of each NDF in a row; with all orders of scattering it is brighter. */
+static void glass_is_shown_without_a_file(void **state)
+{
+	(void)state;
+#define TWO_SPHERES "render --transmission --ndf std,ggx --sigma 1 --gamma 2.4 " QUICK " -e sky -o glass.pfm"
+	double sum[2] = {0, 0};
+	for (int multiple = 0; multiple < 2; multiple++) {
+		if (multiple)
+			stdfit(TWO_SPHERES " --multiple");
+		else
+			stdfit(TWO_SPHERES);
+		expect_code(0);
+		assert_string_equal(last.out, "");
+		assert_string_equal(last.err, "");
+		struct image image = read_picture("glass.pfm");
+		check_between(image.width, 2 * 24, 3 * 24, "width");
+		check_between(image.height, 2 * 24, 3 * 24, "height");
+		for (int y = -4; y < 4; y++)
+			for (int x = -4; x < 4; x++)
+				sum[multiple] += image_at(&image, MIDDLE_X + x, MIDDLE_Y + y)[1] / 64;
+		image_free(&image);
+	}
+	check_between(sum[0], 0.01, 10, "single");
+	check_between(sum[1] / sum[0], 1.1, 20, "multiple over single");
+}
+
+static void glass_takes_its_own_options(void **state)
+{
+	(void)state;
+#define GLASS "render --transmission --sigma 0.3 "
+	static const struct {
+		const char *arguments, *text;
+	} wrong[] = {
+		{"render --multiple m.binary", "--multiple means nothing without --transmission"},
+		{GLASS "--gamma 2", "--transmission needs -o"},
+		{GLASS "--gamma 2 -o no.pfm m.binary", "--transmission shows no files, found 1"},
+		{GLASS "-o no.pfm", "--ndf std needs --gamma"},
+		{GLASS "--ndf ggx --gamma 2 -o no.pfm", "--ndf ggx has no --gamma"},
+		{"render --transmission --ndf ggx -o no.pfm", "--transmission needs --sigma"},
+		{GLASS "--ndf ggx --ks 1 -o no.pfm", "--ks means nothing with --transmission"},
+		{GLASS "--ndf ggx --multiple --gaf correlated -o no.pfm", "--gaf means nothing with --multiple"},
+		{GLASS "--ndf ggx --multiple --sampling ndf -o no.pfm", "--sampling means nothing with --multiple"},
+		{GLASS "--ndf ggx --gaf v-groove -o no.pfm", "v-groove is of reflection alone"},
+		{GLASS "--ndf ggx -o no.jpg", "expected -o FILE.png"},
+		{GLASS "--ndf ggx --light 0,0,0 -o no.pfm", "for --light"},
+	};
+	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+		stdfit(wrong[i].arguments);
+		expect_error(2, wrong[i].text);
+	}
+	stdfit(GLASS "--ndf gtr --gamma 2 --multiple -o no.pfm " QUICK);
+	expect_error(1, "there is no glass of --ndf gtr with these options");
+	stdfit(GLASS "--ndf pl -o no.pfm");
+	expect_error(1, "--ndf pl does not allow these parameters");
+	stdfit(GLASS "--ndf gtr --gamma 2 " QUICK " -o no/such/place.pfm");
+	expect_error(1, "cannot write 'no/such/place.pfm'");
+	assert_false(is_there("no.pfm"));
+}
+
 static int set_up(void **state)
 {
 	if (enter_directory(state))
@@ -308,6 +367,8 @@ int main(void)
 		cmocka_unit_test(wrong_usage_is_refused),
 		cmocka_unit_test(one_bad_file_costs_only_itself),
 		cmocka_unit_test(files_are_those_that_were_fitted),
+		cmocka_unit_test(glass_is_shown_without_a_file),
+		cmocka_unit_test(glass_takes_its_own_options),
 		cmocka_unit_test(an_interrupt_leaves_no_picture),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);

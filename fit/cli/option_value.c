@@ -200,6 +200,11 @@ const struct option_spec option_specs[] = {
 	{"seed", 0, KIND_SEED, RENDER, NOT_RECORDED, "N", "seed of the samples", AT(fit.seed), 0, 0},
 	{"difference", 0, KIND_ON, RENDER, NOT_RECORDED, NULL,
 	 "show differences in false colours for several materials, too", AT(difference), 0, 0},
+	{"transmission", 0, KIND_ON, RENDER, NOT_RECORDED, NULL,
+	 "instead of files a solid sphere of glass (--ior) with a rough surface (--sigma, --gamma), of each NDF",
+	 AT(transmission), 0, 0},
+	{"multiple", 0, KIND_ON, RENDER, NOT_RECORDED, NULL,
+	 "with --transmission: light also meets several facets of the surface", AT(multiple), 0, 0},
 	{NULL, 0, KIND_ON, 0, NOT_RECORDED, NULL, NULL, 0, 0, 0},
 };
 

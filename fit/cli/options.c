@@ -97,7 +97,7 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "are fitted, taken from a result table (--from, or FILE.csv as the only path: the files it\n"
 		 "names), or given (--kd, --ks, ...). Reports how different model and table look: rmse of linear\n"
 		 "values, delta_e the mean CIEDE2000, ssim the structural similarity; these numbers are all that is\n"
-		 "made without -o.\n"},
+		 "made without -o. With --transmission it takes no PATH, and shows spheres of rough glass.\n"},
 	[COMMAND_PLOT] =
 		{"plot", "PATH...", "fits, or the course of searches, as plots by gnuplot",
 		 "Takes a result table (FILE.csv), or fits measurements or directories. Writes into the directory\n"
@@ -566,7 +566,7 @@ int options_parse(struct options *options, enum command command, int argc, char 
 	options->n_paths = argc - optind;
 	options->cancel = cancel;
 	options->fit.cancel = cancel;
-	if (!options->n_paths && commands[command].arguments[0] != '[')
+	if (!options->n_paths && commands[command].arguments[0] != '[' && !options->transmission)
 		return options_usage(command, "expected %s, found nothing", commands[command].arguments);
 	const bool fits = command == COMMAND_FIT || command == COMMAND_COMPARE || command == COMMAND_BENCH;
 	int wrong = find_standard_output(options);

@@ -51,6 +51,7 @@ struct options {
 	double exposure;         /* stops */
 	int size, pixel_samples;
 	bool difference;
+	bool transmission, multiple; /* render: a sphere of glass, with all orders of scattering */
 	bool pictures; /* compare: columns of pictures */
 	atomic_bool *cancel;
 	char **path; /* what is no option, in the order given */

@@ -9,6 +9,7 @@
 #include "fit/cli/outputs.h"
 #include "fit/cli/progress.h"
 #include "fit/commands/commands.h"
+#include "fit/render/glass.h"
 #include "fit/render/pictures.h"
 #include "fit/render/sheet.h"
 #include "fit/results/store.h"
@@ -238,7 +239,108 @@ static int collect_and_show(struct render *render)
 	return code == EXIT_DONE && bad ? EXIT_FAILED : code;
 }
 
+/* Glass */
+
+static enum status glass_of(const struct options *options, const struct ndf_class *class, struct glass *glass,
+			    struct error *error)
+{
+	const struct fit_options *fit = &options->fit;
+	struct ndf ndf;
+	enum status status = ndf_init(&ndf, class, fit->sigma, fit->sigma, isnan(fit->gamma) ? 2 : fit->gamma);
+	if (status != STATUS_OK)
+		return error_set(error, status, "--ndf %s does not allow these parameters", ndf_name(class));
+	status = glass_init(glass, &ndf, fit->criterion.gaf, isnan(fit->ior) ? 1.5 : fit->ior, options->multiple,
+			    options->sampling);
+	if (status != STATUS_OK)
+		error_set(error, status, "there is no glass of --ndf %s with these options", ndf_name(class));
+	return status;
+}
+
+static enum status draw_glass(struct render *render, struct error *error)
+{
+	const struct options *options = render->options;
+	enum status status = sheet_init(&render->sheet, options->size, options->fit.n_ndf, 1, false);
+	if (status != STATUS_OK)
+		return error_set(error, status, "the picture would be too large: expected a smaller --size");
+	for (int i = 0; i < options->fit.n_ndf && status == STATUS_OK; i++) {
+		struct glass glass;
+		struct sphere sphere;
+		status = glass_of(options, options->fit.ndf[i], &glass, error);
+		if (status != STATUS_OK)
+			return status;
+		status = sphere_render_glass(&glass, &render->environment, &render->sphere, &sphere);
+		if (status != STATUS_OK)
+			return error_set(error, status, "%s", status_str(status));
+		sheet_title(&render->sheet, i, ndf_name(options->fit.ndf[i]));
+		sheet_sphere(&render->sheet, i, 0, &sphere, options->multiple ? "multiple" : "single");
+		sphere_free(&sphere);
+	}
+	return status;
+}
+
+static int show_glass(struct render *render)
+{
+	const struct options *options = render->options;
+	struct error error;
+	enum status status = lighting_make(options, &render->environment, &error);
+	if (status == STATUS_DOMAIN)
+		return options_usage(COMMAND_RENDER, "%s", error.text);
+	if (status == STATUS_OK)
+		status = store_probe(render->picture, &error);
+	render->progress = progress_start((size_t)options->fit.n_ndf * (size_t)options->size, "rows", options->quiet);
+	if (status == STATUS_OK)
+		status = draw_glass(render, &error);
+	progress_erase(&render->progress);
+	if (status == STATUS_OK)
+		status = write_picture(render, &error);
+	if (*options->cancel)
+		return EXIT_INTERRUPTED;
+	if (status != STATUS_OK)
+		report_error("%s", error.text);
+	return status == STATUS_OK ? EXIT_DONE : EXIT_FAILED;
+}
+
 /* Options */
+
+static int check_glass_shape(const struct options *options)
+{
+	const struct fit_options *fit = &options->fit;
+	bool shaped = false;
+	for (int i = 0; i < fit->n_ndf; i++)
+		shaped |= ndf_has_gamma(fit->ndf[i]);
+	if (!options_given(options, "sigma") || !isnan(fit->sigma_y))
+		return options_usage(COMMAND_RENDER, "--transmission needs --sigma with one number");
+	if (shaped != options_given(options, "gamma"))
+		return options_usage(COMMAND_RENDER, shaped ? "--ndf %s needs --gamma" : "--ndf %s has no --gamma",
+				     ndf_name(fit->ndf[0]));
+	return -1;
+}
+
+static int check_glass(const struct options *options)
+{
+	static const char *const useful[] = {"transmission", "multiple", "ndf",         "sigma",   "gamma",    "ior",
+					     "gaf",          "output",   "environment", "light",   "exposure", "size",
+					     "samples",      "sampling", "seed",        "threads", "quiet",    NULL};
+	const char *ignored = options_given_beside(options, useful);
+	if (options->multiple && !options->transmission)
+		return options_usage(COMMAND_RENDER, "--multiple means nothing without --transmission");
+	if (!options->transmission)
+		return -1;
+	if (options->n_paths)
+		return options_usage(COMMAND_RENDER, "--transmission shows no files, found %d", options->n_paths);
+	if (options->multiple && options_given(options, "gaf"))
+		ignored = "gaf";
+	if (options->multiple && options_given(options, "sampling"))
+		ignored = "sampling";
+	if (ignored)
+		return options_usage(COMMAND_RENDER, "--%s means nothing with --%s", ignored,
+				     options->multiple ? "multiple" : "transmission");
+	if (!options->picture)
+		return options_usage(COMMAND_RENDER, "--transmission needs -o");
+	if (options->fit.criterion.gaf == GAF_V_GROOVE)
+		return options_usage(COMMAND_RENDER, "--gaf v-groove is of reflection alone");
+	return check_glass_shape(options);
+}
 
 static int check_paths(struct render *render)
 {
@@ -294,10 +396,13 @@ int cmd_render(int argc, char **argv, atomic_bool *cancel)
 	if (code >= 0)
 		return code;
 	struct render render = {.options = &options, .output = csv_table_make(columns, RENDER_COLUMNS)};
-	code = check_paths(&render);
-	if (code < 0 && model_source_kind(&options) == SOURCE_GIVEN && !options_given(&options, "ndf"))
-		options.fit.n_ndf = 1;
+	code = check_glass(&options);
 	if (code < 0)
+		code = check_paths(&render);
+	if (code < 0 && (options.transmission || model_source_kind(&options) == SOURCE_GIVEN) &&
+	    !options_given(&options, "ndf"))
+		options.fit.n_ndf = 1;
+	if (code < 0 && !options.transmission)
 		code = model_source_check(&options, true);
 	if (code < 0)
 		code = check_picture(&render, &renamed);
@@ -309,7 +414,7 @@ int cmd_render(int argc, char **argv, atomic_bool *cancel)
 							.cancel = cancel,
 							.row_done = row_done,
 							.user = &render};
-		code = collect_and_show(&render);
+		code = options.transmission ? show_glass(&render) : collect_and_show(&render);
 	}
 	environment_free(&render.environment);
 	sheet_free(&render.sheet);
