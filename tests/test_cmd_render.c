@@ -47,10 +47,10 @@ static void a_material_beside_its_own_model_shows_no_difference(void **state)
 	(void)state;
 	stdfit("render m.binary " MODEL " " QUICK " -o own.pfm");
 	expect_code(0);
-	expect_out("material,ndf,error,rmse,delta_e,ssim\nm,std,,");
+	expect_out("material,ndf,weight,error,rmse,delta_e,ssim\nm,std,,,");
 	assert_int_equal(count_lines(last.out), 2);
-	check_between(number_at(4), 0, 0.2, "delta E");
-	check_between(number_at(5), 0.999, 1, "SSIM");
+	check_between(number_at(5), 0, 0.2, "delta E");
+	check_between(number_at(6), 0.999, 1, "SSIM");
 	assert_string_equal(last.err, "");
 	/* Two spheres, and below them the legend and the difference. */
 	struct image image = read_picture("own.pfm");
@@ -66,7 +66,7 @@ static void a_material_beside_its_own_model_shows_no_difference(void **state)
 	/* Another model is another picture. */
 	stdfit("render m.binary --kd 0.3,0.2,0.1 " QUICK);
 	expect_code(0);
-	assert_true(number_at(4) > 1);
+	assert_true(number_at(5) > 1);
 }
 
 static void the_same_bits_for_seed_and_threads(void **state)
@@ -114,8 +114,8 @@ static void fits_and_tables_make_sheets(void **state)
 	stdfit("render fits.csv " QUICK " -o sheet.pfm");
 	expect_code(0);
 	assert_int_equal(count_lines(last.out), 5);
-	expect_out("\nm,beckmann,");
-	expect_out("\nn,ggx,");
+	expect_out("\nm,beckmann,none,");
+	expect_out("\nn,ggx,none,");
 	struct image sheet = read_picture("sheet.pfm");
 	check_between(sheet.width, 3 * 24, 4 * 24, "three columns");
 	check_between(sheet.height, 2 * 24, 4 * 24, "two rows");

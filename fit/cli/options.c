@@ -136,9 +136,12 @@ struct read_options options_reading(const struct options *options, int threads)
 	return (struct read_options){.threads = threads, .quantity = options->quantity, .gamut = options->gamut};
 }
 
-char *options_text(const struct options *options)
+char *options_text(const struct options *options, enum weight weight)
 {
 	struct text_stream stream;
+	struct options one = *options;
+	one.fit.criterion.weight = weight;
+	one.n_weights = 0;
 	if (!text_stream_open(&stream))
 		return NULL;
 	const char *between = "";
@@ -146,7 +149,7 @@ char *options_text(const struct options *options)
 		if (!is_recorded(options, spec))
 			continue;
 		fprintf(stream.file, "%s%s=", between, spec->name);
-		option_write(stream.file, options, spec);
+		option_write(stream.file, &one, spec);
 		between = " ";
 	}
 	return text_stream_close(&stream);
@@ -510,6 +513,8 @@ int options_check_fit(const struct options *options)
 		return options_usage(options->command, "--starts means nothing with another --algorithm than default");
 	if (options->command != COMMAND_BENCH && options_given(options, "seed") && !fit->starts && !fit->algorithm)
 		return options_usage(options->command, "--seed means nothing without --starts");
+	if (options->trace && options->n_weights > 1)
+		return options_usage(options->command, "--trace takes one --weight");
 	if (options->trace && !isnan(options->within))
 		return options_usage(options->command, "--trace and --within exclude each other");
 	if (options->resume && !options->output)

@@ -30,7 +30,7 @@ struct sink {
 static void show_rows(struct sink *sink, const struct csv_table *rows)
 {
 	if (sink->show == SHOW_READABLE) {
-		report_fits(stdout, rows, !sink->headed && rows->n_rows);
+		report_fits(stdout, rows, !sink->headed && rows->n_rows, sink->batch->n_weights > 1);
 		sink->headed |= rows->n_rows > 0;
 	} else if (sink->show == SHOW_CSV) {
 		for (size_t i = 0; i < rows->n_rows; i++)
@@ -66,8 +66,9 @@ static bool file_done(void *user, struct batch_file *file)
 {
 	struct sink *sink = user;
 	if (sink->stored) {
-		const struct result_source source = batch_source(sink->batch, file);
-		store_drop_stale(&sink->store, &source);
+		struct result_source source[WEIGHT_COUNT];
+		batch_sources(sink->batch, file, source);
+		store_drop_stale(&sink->store, source, sink->batch->n_weights);
 		sink->broken = store_append(&sink->store, &file->rows, &sink->error) != STATUS_OK;
 	}
 	if (!sink->broken)
