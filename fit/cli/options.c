@@ -105,7 +105,7 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "Takes a result table (FILE.csv), or fits measurements or directories. Writes index.html into the\n"
 		 "directory of -o: a summary, a table that can be sorted, and per material its spheres (see\n"
 		 "stdfit render), plots (see stdfit plot), parameters, their certainty, options and versions.\n"
-		 "Of more than 150 materials each has a page of its own, in materials/ beside index.html.\n"},
+		 "Of more than 50 materials each has a page of its own, in materials/ beside index.html.\n"},
 };
 
 const struct command_text *options_command(enum command command)
@@ -300,10 +300,8 @@ struct options options_default(enum command command)
 		options.fit.n_ndf = 1;
 		options.fit.ior = 1.5;
 	}
-	if (command == COMMAND_REPORT) { /* small: a page may hold a hundred of these */
-		options.size = 112;
-		options.pixel_samples = 32;
-	}
+	if (command == COMMAND_REPORT) /* a page may hold a hundred of them */
+		options.pixel_samples = 16;
 	if (command == COMMAND_BENCH || command == COMMAND_EXPORT)
 		options.fit.n_ndf = 1;
 	if (makes_pictures(command))

@@ -387,6 +387,12 @@ bool result_same_but_weight(char *const *a, char *const *b)
 	       result_same_options(word_a + strcspn(word_a, " "), word_b + strcspn(word_b, " "));
 }
 
+bool result_looks_wrong(char *const *row)
+{
+	return strcmp(row[RESULT_WEIGHT], weight_name(WEIGHT_SOLID_ANGLE)) != 0 && !result_failed(row) &&
+	       result_number(row, RESULT_ERROR_SOLID_ANGLE) > RESULT_LOOKS_WRONG;
+}
+
 bool result_one_row_a_file(char *const *row)
 {
 	return strstr(row[RESULT_OPTIONS], "within=");
