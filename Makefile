@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Targets: all (default), check, check-long, check-docs, demo, bench, figures, stability, asan, ubsan, tsan, lint, architecture,
-# valgrind, compilers, fuzz, killtest, install, uninstall, dist, deb, clean. Those that check or show something install what is
+# valgrind, compilers, fuzz, killtest, page-tools, install, uninstall, dist, deb, clean. Those that check or show something install what is
 # missing first.
 VERSION := 0.2.0
 
@@ -206,11 +206,15 @@ check-docs: setup
 	@$(MAKE) --no-print-directory all library
 	@MERL='$(MERL)' scripts/check_docs.sh $(BUILD)/stdfit
 
+# What the browser test holds the page of a report against, beside its own eyes.
+page-tools:
+	npm install --no-audit --no-fund --prefix $(BUILD)/npm axe-core html-validate
+
 clean:
 	rm -rf $(BUILD)
 
 include scripts/install.mk
 
-.PHONY: all setup check check-long check-docs check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo clean
+.PHONY: all setup check check-long check-docs check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo page-tools clean
 
 -include $(lib_objects:.o=.d) $(BUILD)/fit/commands/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))

@@ -164,7 +164,7 @@ static void rewrite(struct store *store)
 		const struct result_source source = {
 			.path = row[RESULT_PATH], .input = "another", .options = row[RESULT_OPTIONS]};
 		PROMISE(!store_has(store, &source, NULL) || !strcmp(row[RESULT_INPUT], "another"));
-		store_drop_stale(store, &source);
+		store_drop_stale(store, &source, 1);
 	}
 	for (size_t i = 0; i < store->old.n_rows; i++)
 		kept += !store->stale[i];

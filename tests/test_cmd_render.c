@@ -47,10 +47,10 @@ static void a_material_beside_its_own_model_shows_no_difference(void **state)
 	(void)state;
 	stdfit("render m.binary " MODEL " " QUICK " -o own.pfm");
 	expect_code(0);
-	expect_out("material,ndf,error,rmse,delta_e,ssim\nm,std,,");
+	expect_out("material,ndf,weight,error,rmse,delta_e,ssim\nm,std,,,");
 	assert_int_equal(count_lines(last.out), 2);
-	check_between(number_at(4), 0, 0.2, "delta E");
-	check_between(number_at(5), 0.999, 1, "SSIM");
+	check_between(number_at(5), 0, 0.2, "delta E");
+	check_between(number_at(6), 0.999, 1, "SSIM");
 	assert_string_equal(last.err, "");
 	/* Two spheres, and below them the legend and the difference. */
 	struct image image = read_picture("own.pfm");
@@ -66,7 +66,7 @@ static void a_material_beside_its_own_model_shows_no_difference(void **state)
 	/* Another model is another picture. */
 	stdfit("render m.binary --kd 0.3,0.2,0.1 " QUICK);
 	expect_code(0);
-	assert_true(number_at(4) > 1);
+	assert_true(number_at(5) > 1);
 }
 
 static void the_same_bits_for_seed_and_threads(void **state)
@@ -114,8 +114,8 @@ static void fits_and_tables_make_sheets(void **state)
 	stdfit("render fits.csv " QUICK " -o sheet.pfm");
 	expect_code(0);
 	assert_int_equal(count_lines(last.out), 5);
-	expect_out("\nm,beckmann,");
-	expect_out("\nn,ggx,");
+	expect_out("\nm,beckmann,none,");
+	expect_out("\nn,ggx,none,");
 	struct image sheet = read_picture("sheet.pfm");
 	check_between(sheet.width, 3 * 24, 4 * 24, "three columns");
 	check_between(sheet.height, 2 * 24, 4 * 24, "two rows");
@@ -135,9 +135,23 @@ static void fits_and_tables_make_sheets(void **state)
 	/* And from fits made for the picture. Without -o the numbers alone. */
 	stdfit("render m.binary " CHEAP " " QUICK);
 	expect_code(0);
-	expect_out("material,ndf,error,rmse,delta_e,ssim\n");
+	expect_out("material,ndf,weight,error,rmse,delta_e,ssim\n");
 	expect_out("\nm,ggx,");
-	assert_true(number_at(4) > 0);
+	assert_true(number_at(5) > 0);
+	/* These have the weight that pictures agree with best, which is told; who names a weight gets that. */
+	char *own = strdup(last.out);
+	stdfit("render m.binary " CHEAP " " QUICK);
+	expect_error(0, "fitted under --weight solid-angle");
+	assert_string_equal(last.out, own);
+	stdfit("render m.binary --weight solid-angle " CHEAP " " QUICK);
+	assert_string_equal(last.err, "");
+	assert_string_equal(last.out, own);
+	stdfit("render m.binary --weight none " CHEAP " " QUICK);
+	assert_string_equal(last.err, "");
+	assert_string_not_equal(last.out, own);
+	stdfit("render fits.csv " QUICK);
+	assert_string_equal(last.err, "");
+	free(own);
 	/* compare shows the same errors beside its own. */
 	stdfit("compare fits.csv --pictures");
 	expect_code(0);

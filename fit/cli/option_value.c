@@ -74,7 +74,13 @@ const struct option_spec option_specs[] = {
 	 "form of Lambda of STD and its family; other NDFs have the exact one only", AT(fit.lambda), 0, 0},
 	{"fresnel", 0, KIND_FRESNEL, SEARCHES | MODEL | SOURCES, RECORDED, "NAME", "Fresnel term F", AT(fit.fresnel), 0,
 	 0},
-	{"weight", 0, KIND_WEIGHT, SEARCHES | SOURCES, RECORDED, "NAME", "how an entry counts in the error",
+	{"weight", 0, KIND_WEIGHTS, FIT, RECORDED, "LIST",
+	 "how an entry counts in the error; of several, separated by commas, each has fits of its own",
+	 AT(fit.criterion.weight), 0, 0},
+	{"weight", 0, KIND_WEIGHT, COMPARE | BENCH | DRAWS, NOT_RECORDED, "NAME", "how an entry counts in the error",
+	 AT(fit.criterion.weight), 0, 0},
+	{"weight", 0, KIND_WEIGHT, SOURCES, NOT_RECORDED, "NAME",
+	 "how an entry counts in the error of a fit; with --from FILE.csv: only rows fitted so",
 	 AT(fit.criterion.weight), 0, 0},
 	{"bins", 0, KIND_BINS, SEARCHES | MODEL | SOURCES | INFO | CONVERT, RECORDED, "NAME",
 	 "where the entries of a table stand", AT(fit.criterion.bins), 0, 0},
@@ -223,6 +229,7 @@ const char *option_choice(enum option_kind kind, int i)
 	case KIND_FRESNEL:
 		return i < FRESNEL_COUNT ? fresnel_name((enum fresnel)i) : NULL;
 	case KIND_WEIGHT:
+	case KIND_WEIGHTS:
 		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
 	case KIND_BINS:
 		return i < BINS_COUNT ? bins_name((enum bins)i) : NULL;
@@ -438,6 +445,25 @@ static enum status parse_ndfs(const char *text, struct fit_options *fit, struct 
 	return STATUS_OK;
 }
 
+static enum status parse_weights(const char *text, struct options *options, struct error *error)
+{
+	char name[64];
+	int n = 0;
+	for (const char *rest = text; rest; n++) {
+		enum weight weight;
+		rest = next_item(rest, name, sizeof name);
+		if (weight_find(name, &weight) != STATUS_OK)
+			return expected_choice(KIND_WEIGHTS, error);
+		for (int i = 0; i < n; i++)
+			if (options->weight[i] == weight)
+				return error_set(error, STATUS_DOMAIN, "'%s' stands there twice", name);
+		options->weight[n] = weight;
+	}
+	options->n_weights = n;
+	options->fit.criterion.weight = options->weight[0];
+	return STATUS_OK;
+}
+
 static enum status parse_algorithms(const char *text, struct options *options, struct error *error)
 {
 	char name[64];
@@ -487,6 +513,8 @@ enum status option_parse(struct options *options, const struct option_spec *spec
 		return parse_phi(text, value, error);
 	case KIND_NDFS:
 		return parse_ndfs(text, &options->fit, error);
+	case KIND_WEIGHTS:
+		return parse_weights(text, options, error);
 	case KIND_ALGORITHMS:
 		return parse_algorithms(text, options, error);
 	default:
@@ -501,6 +529,13 @@ static void write_ndfs(FILE *file, const struct fit_options *fit)
 {
 	for (int i = 0; i < fit->n_ndf; i++)
 		fprintf(file, "%s%s", i ? "," : "", ndf_name(fit->ndf[i]));
+}
+
+static void write_weights(FILE *file, const struct options *options)
+{
+	fputs(weight_name(options->fit.criterion.weight), file);
+	for (int i = 1; i < options->n_weights; i++)
+		fprintf(file, ",%s", weight_name(options->weight[i]));
 }
 
 static void write_algorithms(FILE *file, const struct options *options)
@@ -557,6 +592,9 @@ void option_write(FILE *file, const struct options *options, const struct option
 		break;
 	case KIND_WEIGHT:
 		fputs(weight_name(*(const enum weight *)value), file);
+		break;
+	case KIND_WEIGHTS:
+		write_weights(file, options);
 		break;
 	case KIND_BINS:
 		fputs(bins_name(*(const enum bins *)value), file);

@@ -110,7 +110,7 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "Takes a result table (FILE.csv), or fits measurements or directories. Writes index.html into the\n"
 		 "directory of -o: a summary, a table that can be sorted, and per material its spheres (see\n"
 		 "stdfit render), plots (see stdfit plot), parameters, their certainty, options and versions.\n"
-		 "Of more than 150 materials each has a page of its own, in materials/ beside index.html.\n"},
+		 "Of more than 50 materials each has a page of its own, in materials/ beside index.html.\n"},
 };
 
 const struct command_text *options_command(enum command command)
@@ -141,9 +141,12 @@ struct read_options options_reading(const struct options *options, int threads)
 	return (struct read_options){.threads = threads, .quantity = options->quantity, .gamut = options->gamut};
 }
 
-char *options_text(const struct options *options)
+char *options_text(const struct options *options, enum weight weight)
 {
 	struct text_stream stream;
+	struct options one = *options;
+	one.fit.criterion.weight = weight;
+	one.n_weights = 0;
 	if (!text_stream_open(&stream))
 		return NULL;
 	const char *between = "";
@@ -151,7 +154,7 @@ char *options_text(const struct options *options)
 		if (!is_recorded(options, spec))
 			continue;
 		fprintf(stream.file, "%s%s=", between, spec->name);
-		option_write(stream.file, options, spec);
+		option_write(stream.file, &one, spec);
 		between = " ";
 	}
 	return text_stream_close(&stream);
@@ -266,6 +269,21 @@ int options_usage(enum command command, const char *format, ...)
 	return EXIT_USAGE;
 }
 
+/* Whether what a command makes is to be looked at. Then its own fits have the weight that pictures agree with best. */
+static bool makes_pictures(enum command command)
+{
+	return command == COMMAND_RENDER || command == COMMAND_PLOT || command == COMMAND_REPORT ||
+	       command == COMMAND_EXPORT;
+}
+
+void options_say_weight(const struct options *options)
+{
+	if (makes_pictures(options->command) && !options->quiet && !options_given(options, "weight"))
+		report_error(
+			"fitted under --weight %s, with which pictures agree best; --weight none is the paper's error",
+			weight_name(options->fit.criterion.weight));
+}
+
 struct options options_default(enum command command)
 {
 	struct options options = {
@@ -287,12 +305,12 @@ struct options options_default(enum command command)
 		options.fit.n_ndf = 1;
 		options.fit.ior = 1.5;
 	}
-	if (command == COMMAND_REPORT) { /* small: a page may hold a hundred of these */
-		options.size = 112;
-		options.pixel_samples = 32;
-	}
+	if (command == COMMAND_REPORT) /* a page may hold a hundred of them */
+		options.pixel_samples = 16;
 	if (command == COMMAND_BENCH || command == COMMAND_EXPORT)
 		options.fit.n_ndf = 1;
+	if (makes_pictures(command))
+		options.fit.criterion.weight = WEIGHT_SOLID_ANGLE;
 	return options;
 }
 
@@ -508,6 +526,8 @@ int options_check_fit(const struct options *options)
 		return options_usage(options->command, "--starts means nothing with another --algorithm than default");
 	if (options->command != COMMAND_BENCH && options_given(options, "seed") && !fit->starts && !fit->algorithm)
 		return options_usage(options->command, "--seed means nothing without --starts");
+	if (options->trace && options->n_weights > 1)
+		return options_usage(options->command, "--trace takes one --weight");
 	if (options->trace && !isnan(options->within))
 		return options_usage(options->command, "--trace and --within exclude each other");
 	if (options->resume && !options->output)

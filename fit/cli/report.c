@@ -271,7 +271,9 @@ static bool is_narrow(FILE *file)
 	return terminal_table_width(file) < FITS_WIDTH;
 }
 
-static void print_fit(FILE *file, char *const *row, bool narrow)
+enum { WEIGHT_WIDTH = 11 };
+
+static void print_fit(FILE *file, char *const *row, bool narrow, bool weights)
 {
 	static const struct {
 		enum result_column column;
@@ -290,6 +292,11 @@ static void print_fit(FILE *file, char *const *row, bool narrow)
 	fputs("  ", file);
 	text_quote(row[RESULT_NDF], text, sizeof text);
 	print_padded(file, text, 8, false);
+	if (weights) {
+		fputs("  ", file);
+		text_quote(row[RESULT_WEIGHT], text, sizeof text);
+		print_padded(file, text, WEIGHT_WIDTH, false);
+	}
 	if (result_failed(row)) {
 		text_quote(row[RESULT_STATUS], text, sizeof text);
 		print_remark(file, text, narrow);
@@ -315,15 +322,18 @@ static void print_fit(FILE *file, char *const *row, bool narrow)
 	fputc('\n', file);
 }
 
-void report_fits(FILE *file, const struct csv_table *results, bool heading)
+void report_fits(FILE *file, const struct csv_table *results, bool heading, bool weights)
 {
 	const bool narrow = is_narrow(file);
-	if (heading && narrow)
-		fprintf(file, "%-*s  %-8s %9s %9s %8s %8s\n", FITS_NAME, "material", "ndf", "error", "sigma", "gamma",
-			"n");
-	else if (heading)
-		fprintf(file, "%-*s  %-8s %9s %9s %8s %8s  %-20s  %-20s  %s\n", FITS_NAME, "material", "ndf", "error",
-			"sigma", "gamma", "n", "kd", "ks", "at bound");
+	if (heading) {
+		fprintf(file, "%-*s  %-8s", FITS_NAME, "material", "ndf");
+		if (weights)
+			fprintf(file, "  %-*s", WEIGHT_WIDTH, "weight");
+		fprintf(file, " %9s %9s %8s %8s", "error", "sigma", "gamma", "n");
+		if (!narrow)
+			fprintf(file, "  %-20s  %-20s  %s", "kd", "ks", "at bound");
+		fputc('\n', file);
+	}
 	for (size_t i = 0; i < results->n_rows; i++)
-		print_fit(file, results->row[i], narrow);
+		print_fit(file, results->row[i], narrow, weights);
 }

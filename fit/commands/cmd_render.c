@@ -22,6 +22,7 @@
 enum render_column {
 	RENDER_MATERIAL,
 	RENDER_NDF,
+	RENDER_WEIGHT,
 	RENDER_ERROR,
 	RENDER_RMSE,
 	RENDER_DELTA_E,
@@ -30,8 +31,9 @@ enum render_column {
 };
 
 static const struct csv_column columns[RENDER_COLUMNS] = {
-	[RENDER_MATERIAL] = {"material", false}, [RENDER_NDF] = {"ndf", false},        [RENDER_ERROR] = {"error", true},
-	[RENDER_RMSE] = {"rmse", true},          [RENDER_DELTA_E] = {"delta_e", true}, [RENDER_SSIM] = {"ssim", true},
+	[RENDER_MATERIAL] = {"material", false}, [RENDER_NDF] = {"ndf", false},  [RENDER_WEIGHT] = {"weight", false},
+	[RENDER_ERROR] = {"error", true},        [RENDER_RMSE] = {"rmse", true}, [RENDER_DELTA_E] = {"delta_e", true},
+	[RENDER_SSIM] = {"ssim", true},
 };
 
 struct render {
@@ -66,7 +68,9 @@ static enum status add_row(struct render *render, const char *material, const st
 		[RENDER_SSIM] = picture->ssim,
 	};
 	char text[RENDER_COLUMNS][CSV_NUMBER_SIZE];
-	const char *cell[RENDER_COLUMNS] = {material, ndf_name(model->model.ndf.class)};
+	/* The error of given parameters is not known, and under no weight. */
+	const char *weight = isnan(model->error) ? "" : weight_name(model->fit.criterion.weight);
+	const char *cell[RENDER_COLUMNS] = {material, ndf_name(model->model.ndf.class), weight};
 	for (int c = RENDER_ERROR; c < RENDER_COLUMNS; c++)
 		cell[c] = csv_number(text[c], number[c]);
 	return csv_table_add(&render->output, cell);
@@ -172,8 +176,13 @@ static enum status prepare_sheet(struct render *render, size_t n, struct error *
 				? "the picture would be too large: expected fewer materials or a smaller --size"
 				: status_str(status));
 	sheet_title(&render->sheet, 0, "measured");
-	for (int c = 0; c < render->columns.n; c++)
-		sheet_title(&render->sheet, 1 + c, render->columns.ndf[c]);
+	for (int c = 0; c < render->columns.n; c++) {
+		const struct shown_columns *shown = &render->columns;
+		char title[64];
+		snprintf(title, sizeof title, "%s%s%s", shown->ndf[c], shown->weights ? " " : "",
+			 shown->weights ? weight_name(shown->weight[c]) : "");
+		sheet_title(&render->sheet, 1 + c, title);
+	}
 	return STATUS_OK;
 }
 
@@ -203,6 +212,8 @@ static int show_files(struct render *render, const struct files *files)
 	for (size_t i = 0; i < files->n && !*options->cancel; i++)
 		failed += show_file(render, files->path[i]) != STATUS_OK;
 	progress_erase(&render->progress);
+	if (model_source_kind(options) == SOURCE_FIT && failed < files->n && !*options->cancel)
+		options_say_weight(options);
 	report_output(&render->output, options->to_standard_output ? SHOW_NOTHING : options_show(options),
 		      report_table);
 	if (*options->cancel)

@@ -26,7 +26,7 @@ static const char *first_given(const struct options *options, const char *const 
 }
 
 /* Options that control a fit and do not describe a model. */
-static const char *const of_a_fit[] = {"weight", "unbounded", "no-diffuse", "no-specular", "gray", "anisotropic", NULL};
+static const char *const of_a_fit[] = {"unbounded", "no-diffuse", "no-specular", "gray", "anisotropic", NULL};
 /* Options that a row determines. */
 static const char *const of_a_model[] = {"kd",  "ks",     "sigma", "angle",   "gamma",     "ior", "k",
 					 "gaf", "lambda", "bins",  "fresnel", "max-theta", NULL};
@@ -44,17 +44,19 @@ static int check_rows(const struct options *options)
 		ignored = first_given(options, of_a_fit);
 	if (ignored)
 		return options_usage(options->command, "--%s and --from exclude each other", ignored);
-	if (options->row && options_given(options, "ndf"))
-		return options_usage(options->command, "--ndf and --row exclude each other");
-	if (is_json(options->from) && (options->row || options_given(options, "ndf")))
-		return options_usage(options->command, "a model's JSON has neither --row nor --ndf");
+	const bool chosen = options_given(options, "ndf") || options_given(options, "weight");
+	if (options->row && chosen)
+		return options_usage(options->command, "--%s and --row exclude each other",
+				     options_given(options, "ndf") ? "ndf" : "weight");
+	if (is_json(options->from) && (options->row || chosen))
+		return options_usage(options->command, "a model's JSON has neither --row nor --ndf nor --weight");
 	return -1;
 }
 
 static int check_given(const struct options *options)
 {
 	struct cook_torrance model;
-	const char *ignored = first_given(options, of_a_fit);
+	const char *ignored = options_given(options, "weight") ? "weight" : first_given(options, of_a_fit);
 	if (ignored)
 		return options_usage(options->command, "--%s means nothing without a fit, --kd and --ks give the model",
 				     ignored);
@@ -111,6 +113,7 @@ static enum status read_given(const struct options *options, const char *materia
 	struct source_model *model = add(source, options, material);
 	if (!model)
 		return no_memory(error);
+	model->fit.criterion.weight = WEIGHT_NONE; /* nothing was fitted */
 	return options_model(options, &model->model) < 0
 		       ? STATUS_OK
 		       : error_set(error, STATUS_DOMAIN, "the options describe no model");
@@ -121,6 +124,9 @@ static bool wanted(const struct options *options, char *const *row, size_t i, co
 	if (options->row)
 		return i + 1 == (size_t)options->row;
 	if ((material && strcmp(row[RESULT_MATERIAL], material) != 0) || result_failed(row))
+		return false;
+	if (options_given(options, "weight") &&
+	    strcmp(row[RESULT_WEIGHT], weight_name(options->fit.criterion.weight)) != 0)
 		return false;
 	if (!options_given(options, "ndf"))
 		return true;

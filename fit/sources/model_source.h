@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* model_source - the models of a command, from one of these sources:
- *     rows of a result table    --from FILE.csv, all of --ndf that are of this material, or --row N
+ *     rows of a result table    --from FILE.csv, all of --ndf and --weight that are of this material, or --row N
  *     a model's JSON            --from FILE.json, as `stdfit export` writes it
  *     given parameters          --kd, --ks, --ndf, --sigma, --gamma, ...
  *     a fresh fit               of a MERL file, with each NDF of --ndf, else */
