@@ -59,7 +59,7 @@ static const struct command_text commands[COMMAND_COUNT] = {
 			  "above the horizon per channel (1/sr), the directional albedo of the data at 0, 30 and 60\n"
 			  "degrees with the share of the hemisphere that is measured, and what looks wrong.\n"},
 	[COMMAND_EXPORT] =
-		{"export", "[FILE]", "a model for another program: BRDF Explorer, Mitsuba 3, pbrt-v4, glTF, ...",
+		{"export", "[FILE]", "a model for another program: BRDF Explorer, Mitsuba 3, pbrt-v4, MaterialX, ...",
 		 "Writes one model: fitted to FILE, from the row of FILE's material in a result table, from\n"
 		 "any row of it (--row), or from given parameters (--kd, --ks, ...). The first lines say\n"
 		 "whether the export is exact or approximate, and why. Where the target has no such model, one\n"

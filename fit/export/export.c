@@ -9,7 +9,7 @@
 static const struct export_target *const targets[EXPORT_FORMATS] = {
 	[EXPORT_BRDF] = &export_brdf, [EXPORT_MERL] = &export_merl,         [EXPORT_MITSUBA] = &export_mitsuba,
 	[EXPORT_PBRT] = &export_pbrt, [EXPORT_GLTF] = &export_gltf,         [EXPORT_JSON] = &export_json,
-	[EXPORT_BSDF] = &export_bsdf, [EXPORT_BSDF_RGB] = &export_bsdf_rgb,
+	[EXPORT_BSDF] = &export_bsdf, [EXPORT_BSDF_RGB] = &export_bsdf_rgb, [EXPORT_MATERIALX] = &export_materialx,
 };
 
 const char *export_format_name(enum export_format format)

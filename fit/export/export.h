@@ -10,18 +10,19 @@
 #include <stdio.h>
 
 enum export_format {
-	EXPORT_BRDF,     /* BRDF Explorer, GLSL: every model */
-	EXPORT_MERL,     /* MERL .binary: every model, to the resolution of the table */
-	EXPORT_MITSUBA,  /* Mitsuba 3, XML: Lambert and GGX or Beckmann, uncorrelated G */
-	EXPORT_PBRT,     /* pbrt-v4: Lambert and GGX, correlated G, one ks for all channels */
-	EXPORT_GLTF,     /* glTF 2.0: always approximate */
+	EXPORT_BRDF,      /* BRDF Explorer, GLSL: every model */
+	EXPORT_MERL,      /* MERL .binary: every model, to the resolution of the table */
+	EXPORT_MITSUBA,   /* Mitsuba 3, XML: Lambert and GGX or Beckmann, uncorrelated G */
+	EXPORT_PBRT,      /* pbrt-v4: Lambert and GGX, correlated G, one ks for all channels */
+	EXPORT_GLTF,      /* glTF 2.0: always approximate */
+	EXPORT_MATERIALX, /* MaterialX 1.39: Lambert and GGX, correlated G, every F */
 	EXPORT_BSDF,     /* RGL tensor_file with spectra: pbrt-v4 and the spectral variants of Mitsuba 3, every model */
 	EXPORT_BSDF_RGB, /* the same with rgb: the rgb variants of Mitsuba 3 */
 	EXPORT_JSON,     /* our own (model_json.h): every model */
 	EXPORT_FORMATS
 };
 
-/* export_format_name - "brdf", "merl", "mitsuba", "pbrt", "gltf", "bsdf", "bsdf-rgb", "json"; "unknown" for any other value. */
+/* export_format_name - "brdf", "merl", "mitsuba", "pbrt", "gltf", "materialx", "bsdf", "bsdf-rgb", "json"; "unknown" for any other value. */
 const char *export_format_name(enum export_format format);
 /* export_format_find - the reverse. Returns STATUS_DOMAIN, *format untouched, for another name. */
 MUST_CHECK enum status export_format_find(const char *name, enum export_format *format);

@@ -17,7 +17,7 @@ struct export_target {
 };
 
 extern const struct export_target export_brdf, export_merl, export_mitsuba, export_pbrt, export_gltf, export_json,
-	export_bsdf, export_bsdf_rgb;
+	export_bsdf, export_bsdf_rgb, export_materialx;
 
 /* export_max - the largest of three channels. */
 static inline double export_max(const double x[3])
