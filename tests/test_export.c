@@ -764,7 +764,8 @@ static void refusals_are_one_line(void **state)
 		const char *part;
 	} bad[] = {
 		{"--kd 1", 2, "expected --format"},
-		{"--kd 1 --format xyz", 2, "expected one of brdf, merl, mitsuba, pbrt, gltf, materialx, bsdf, bsdf-rgb, json"},
+		{"--kd 1 --format xyz", 2,
+		 "expected one of brdf, merl, mitsuba, pbrt, gltf, materialx, bsdf, bsdf-rgb, json"},
 		{"--format json", 2, "expected FILE to fit"},
 		{"a b --format json", 2, "expected one FILE"},
 		{"--kd 1 --format merl", 2, "needs -o FILE"},
