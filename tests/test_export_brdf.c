@@ -247,6 +247,35 @@ static void shader_is_the_model_for_every_form_of_Lambda(void **state)
 	}
 }
 
+static void shader_is_the_model_with_axes(void **state)
+{
+	static const struct {
+		const char *ndf;
+		double sigma_x, sigma_y, gamma, angle;
+	} axes[] = {{"ggx", 0.3, 0.1, 2, 20},
+		    {"ggx", 0.1, 0.3, 2, 20},
+		    {"std", 0.05, 0.2, 1.7, -65},
+		    {"std", 0.4, 0.2, 5, 90},
+		    {"beckmann", 0.5, 0.3, INFINITY, 1e-40},
+		    {"hyper-cauchy", 0.3, 0.2, 2.3, 45}};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof axes / sizeof *axes; i++)
+		for (enum gaf gaf = 0; gaf < GAF_COUNT; gaf++) {
+			struct ndf ndf;
+			char label[100];
+
+			assert_int_equal(
+				ndf_init(&ndf, ndf_find(axes[i].ndf), axes[i].sigma_x, axes[i].sigma_y, axes[i].gamma),
+				STATUS_OK);
+			assert_int_equal(ndf_turn(&ndf, axes[i].angle), STATUS_OK);
+			struct cook_torrance model = model_of(&ndf);
+			model.gaf = gaf;
+			snprintf(label, sizeof label, "%s, %s, axes at %g", axes[i].ndf, gaf_name(gaf), axes[i].angle);
+			compare(&model, label);
+		}
+}
+
 static void shader_is_the_model_for_indices_near_1_and_far(void **state)
 {
 	static const double n[] = {1.0001, 1.01, 3, 38.575, 100}, k[] = {0, 1e-3, 0.5, 8, 100};
@@ -356,6 +385,7 @@ int main(void)
 		cmocka_unit_test(shader_is_the_model_for_every_shape),
 		cmocka_unit_test(shader_is_the_model_for_every_G_and_F),
 		cmocka_unit_test(shader_is_the_model_for_every_form_of_Lambda),
+		cmocka_unit_test(shader_is_the_model_with_axes),
 		cmocka_unit_test(shader_is_the_model_for_indices_near_1_and_far),
 		cmocka_unit_test(shader_is_the_model_with_one_term_only),
 		cmocka_unit_test(out_of_range_is_refused),

@@ -388,6 +388,27 @@ static void others_get_a_substitute(void **state)
 	expect_error(1, "no reflectance above 1");
 }
 
+/* D of the two roughnesses in the frame of the axes; G is of their mean. */
+static void axes_are_those_of_the_roughness(void **state)
+{
+	const struct vec3 wi = {0.3, 0.1, sqrt(0.9)}, wo = {-0.1, -0.2, sqrt(0.95)};
+	struct cook_torrance model = given(0.2, FRESNEL_DIELECTRIC), mean = given(sqrt(0.2 * 0.4), FRESNEL_DIELECTRIC);
+	double f[3], g[3];
+
+	(void)state;
+	assert_int_equal(ndf_init(&model.ndf, ndf_find("ggx"), 0.2, 0.4, 2), STATUS_OK);
+	export_it(LOBE "--ndf ggx --sigma 0.2,0.4 --angle 20 --gaf correlated --ior 1.61");
+	expect_out("approximate: the model itself, but MaterialX computes G");
+	expect_out("along the tangent Tworld, which has to lie at azimuth 20 degrees");
+	struct xml *document = read_document();
+	spec_bsdf(document, material_bsdf(document), wi, wo, f);
+	xml_free(document);
+	const double change = gaf_G(mean.gaf, &mean.ndf, wi, wo) / gaf_G(model.gaf, &model.ndf, wi, wo);
+	cook_torrance_f(&model, wi, wo, g);
+	for (int c = 0; c < 3; c++)
+		check_rel(f[c], model.kd[c] / M_PI + change * (g[c] - model.kd[c] / M_PI), 1e-11, "value");
+}
+
 /* A name that begins with a digit is none. */
 static void names_are_valid(void **state)
 {
@@ -415,7 +436,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(nodes_are_the_model),     cmocka_unit_test(further_reflections_are_stated),
 		cmocka_unit_test(others_get_a_substitute), cmocka_unit_test(names_are_valid),
-		cmocka_unit_test(xmllint_takes_it),
+		cmocka_unit_test(xmllint_takes_it),        cmocka_unit_test(axes_are_those_of_the_roughness),
 	};
 
 	return cmocka_run_group_tests(tests, enter_directory, leave_directory);

@@ -83,9 +83,11 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "Writes a measurement of any format as OUT.csv, samples in linear sRGB or gray with the solid angle\n"
 		 "that each stands for, or as OUT.binary, a MERL file: interpolated, -1 where nothing was measured,\n"
 		 "with the mean of both orders of wi and wo unless --phi 360. One line tells what was lost.\n"},
-	[COMMAND_SYNTH] = {"synth", "OUT.binary", "write a MERL file of a model",
-			   "Writes the table that an ideal measurement of the model would give; -1 below the\n"
-			   "horizon.\n"},
+	[COMMAND_SYNTH] =
+		{"synth", "OUT", "write a measurement of a model: a MERL file, or a CSV of samples",
+		 "Writes the table that an ideal measurement of the model would give; -1 below the horizon. OUT.csv\n"
+		 "gets samples instead, wi on a grid and wo by half vectors around the mirror direction: anisotropic\n"
+		 "models (--sigma SX,SY) need these.\n"},
 	[COMMAND_RENDER] =
 		{"render", "PATH...", "spheres of measured materials beside those of their models, as PNG",
 		 "Renders a sphere of each measured table and of each model of it in the same light, one row a\n"

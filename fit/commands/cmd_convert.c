@@ -9,15 +9,8 @@
 #include "fit/commands/commands.h"
 
 #include <string.h>
-#include <strings.h>
 
 enum { LOST_SIZE = 512 };
-
-static bool ends_with(const char *path, const char *ending)
-{
-	const size_t length = strlen(path), n = strlen(ending);
-	return length > n && !strcasecmp(path + length - n, ending);
-}
 
 /* Adds "; what" to the text. */
 static void add(char text[LOST_SIZE], const char *what)
@@ -88,7 +81,7 @@ static enum status write_table(const struct options *options, const struct measu
 static enum status convert(const struct options *options, struct error *error)
 {
 	const struct read_options reading = options_reading(options, options->fit.threads);
-	const bool as_table = ends_with(options->path[1], ".binary");
+	const bool as_table = outputs_end_with(options->path[1], ".binary");
 	struct measurement measurement;
 	char lost[LOST_SIZE] = "";
 	size_t n = 0;
@@ -110,10 +103,10 @@ int cmd_convert(int argc, char **argv, atomic_bool *cancel)
 	int code = options_parse(&options, COMMAND_CONVERT, argc, argv, cancel);
 	if (code < 0 && options.n_paths != 2)
 		code = options_usage(COMMAND_CONVERT, "expected IN and OUT, found %d names", options.n_paths);
-	if (code < 0 && !ends_with(options.path[1], ".csv") && !ends_with(options.path[1], ".binary") &&
+	if (code < 0 && !outputs_end_with(options.path[1], ".csv") && !outputs_end_with(options.path[1], ".binary") &&
 	    !outputs_standard(options.path[1]))
 		code = options_usage(COMMAND_CONVERT, "expected OUT.csv or OUT.binary, or - for a CSV");
-	if (code < 0 && !ends_with(options.path[1], ".binary") && options_given(&options, "phi"))
+	if (code < 0 && !outputs_end_with(options.path[1], ".binary") && options_given(&options, "phi"))
 		code = options_usage(COMMAND_CONVERT, "--phi means nothing for a CSV");
 	if (code >= 0)
 		return code;

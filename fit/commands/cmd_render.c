@@ -16,7 +16,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 enum render_column {
@@ -177,15 +176,10 @@ static enum status prepare_sheet(struct render *render, size_t n, struct error *
 	return STATUS_OK;
 }
 
-static bool ends_with(const char *path, const char *ending)
-{
-	const size_t length = strlen(path), n = strlen(ending);
-	return length > n && !strcasecmp(path + length - n, ending);
-}
-
 static enum status write_picture(const struct render *render, struct error *error)
 {
-	const bool png = ends_with(render->picture, ".png") || (render->options->to_standard_output && image_has_png());
+	const bool png =
+		outputs_end_with(render->picture, ".png") || (render->options->to_standard_output && image_has_png());
 	return png ? image_write_png(render->picture, &render->sheet.image, error)
 		   : image_write_pfm(render->picture, &render->sheet.image, error);
 }
@@ -275,9 +269,9 @@ static int check_picture(struct render *render, char **renamed)
 		render->options->to_standard_output = true;
 		return -1;
 	}
-	if (ends_with(render->picture, ".pfm"))
+	if (outputs_end_with(render->picture, ".pfm"))
 		return -1;
-	if (!ends_with(render->picture, ".png"))
+	if (!outputs_end_with(render->picture, ".png"))
 		return options_usage(COMMAND_RENDER, "expected -o FILE.png, -o FILE.pfm or -o -");
 	if (image_has_png())
 		return -1;

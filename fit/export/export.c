@@ -41,8 +41,6 @@ enum status export_prepare(struct export *export, enum export_format format, con
 			   struct error *error)
 {
 	*export = (struct export){.format = format, .source = *source, .model = *source->model};
-	if (source->model->ndf.sigma_x != source->model->ndf.sigma_y)
-		return error_set(error, STATUS_UNSUPPORTED, "an anisotropic model cannot be exported");
 	return targets[format]->prepare(export, error);
 }
 
@@ -57,6 +55,11 @@ enum status export_table(const struct export *export, struct measurement *measur
 			   measurement);
 }
 
+bool export_has_axes(const struct cook_torrance *model)
+{
+	return export_max(model->ks) > 0 && model->ndf.sigma_x != model->ndf.sigma_y;
+}
+
 enum status export_as_it_is(struct export *export, const char *text)
 {
 	snprintf(export->why, sizeof export->why, "exact: %.480s", text);
@@ -66,7 +69,9 @@ enum status export_as_it_is(struct export *export, const char *text)
 static enum status merl_prepare(struct export *export, struct error *error)
 {
 	char text[EXPORT_TEXT];
-	(void)error;
+	if (export_has_axes(&export->model))
+		return error_set(error, STATUS_UNSUPPORTED,
+				 "a MERL file is isotropic, the model is not (--format bsdf has every model)");
 	snprintf(text, sizeof text, "the model at the entries of the table (%s bins), to the 24 bits of a float",
 		 bins_name(export->source.fit->criterion.bins));
 	return export_as_it_is(export, text);
@@ -88,9 +93,16 @@ void export_describe(const struct export *export, char text[EXPORT_TEXT])
 		return;
 	}
 	used = snprintf(text, EXPORT_TEXT, "%s: %s", name, ndf_name(model->ndf.class));
-	for (int i = 0; ndf_param_at(model->ndf.class, i); i++)
+	const bool axes = export_has_axes(model);
+	for (int i = axes; ndf_param_at(model->ndf.class, i); i++)
 		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " %s %s",
 				 ndf_param_at(model->ndf.class, i)->name, csv_number(number, model->ndf.param[i]));
+	if (axes) {
+		char sigma_y[CSV_NUMBER_SIZE], angle[CSV_NUMBER_SIZE];
+		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " sigma_x %s sigma_y %s angle %s",
+				 csv_number(number, model->ndf.sigma_x), csv_number(sigma_y, model->ndf.sigma_y),
+				 csv_number(angle, model->ndf.angle));
+	}
 	used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", %s G, %s F", gaf_name(model->gaf),
 			 fresnel_name(model->fresnel));
 	if (model->fresnel != FRESNEL_NONE)
@@ -116,6 +128,17 @@ void export_comment(const struct export *export, FILE *file, const char *before,
 	export_describe(export, text);
 	comment_line(file, before, text, after);
 	snprintf(text, sizeof text, "written by stdfit %s", STDFIT_VERSION);
+	comment_line(file, before, text, after);
+}
+
+void export_comment_axes(const struct export *export, FILE *file, const char *before, const char *along,
+			 const char *after)
+{
+	char text[EXPORT_TEXT], angle[CSV_NUMBER_SIZE];
+	if (!export_has_axes(&export->model))
+		return;
+	snprintf(text, sizeof text, "%.200s, which has to lie at azimuth %s degrees of the sample", along,
+		 csv_number(angle, export->model.ndf.angle));
 	comment_line(file, before, text, after);
 }
 

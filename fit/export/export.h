@@ -29,7 +29,7 @@ MUST_CHECK enum status export_format_find(const char *name, enum export_format *
 
 /* struct export_source - a model and where it is from; all borrowed. */
 struct export_source {
-	const struct cook_torrance *model;     /* isotropic */
+	const struct cook_torrance *model;
 	const struct fit_options *fit;         /* weight, bins and max_theta it was fitted under; threads; cancel */
 	double error;                          /* E under that weight; NaN: not known */
 	const char *material, *path;           /* either may be NULL */

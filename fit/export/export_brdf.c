@@ -142,6 +142,12 @@ static const char log_1p[] =
 	"\treturn 2.0 * s * (1.0 + t * (1.0 / 3.0 + t * (1.0 / 5.0 + t * (1.0 / 7.0 + t * (1.0 / 9.0"
 	" + t * (1.0 / 11.0 + t * (1.0 / 13.0)))))));\n}\n\n";
 
+/* The roughness of the formulas: of an anisotropic distribution the geometric mean; lengths in x and y are scaled then. */
+static double roughness(const struct ndf *ndf)
+{
+	return ndf->sigma_x == ndf->sigma_y ? ndf->sigma_x : sqrt(ndf->sigma_x * ndf->sigma_y);
+}
+
 static void write_D_tan(struct glsl *glsl, const char *returned)
 {
 	lines(glsl, "\nfloat mf_D(vec3 h)\n{\n"
@@ -185,7 +191,7 @@ static enum status write_D_pl(struct glsl *glsl, struct error *error)
 static enum status write_D(struct glsl *glsl, struct error *error)
 {
 	const struct ndf *ndf = &glsl->model->ndf;
-	const double sigma = ndf->sigma_x;
+	const double sigma = roughness(ndf);
 	if (ndf_is_tabulated(ndf->class))
 		return write_D_pl(glsl, error);
 	lines(glsl, log_1p);
@@ -355,21 +361,40 @@ static void write_lambda(struct glsl *glsl, const struct lambda_table *table)
 
 /* G, and the whole */
 
-static const char *const G[GAF_COUNT] = {
-	[GAF_UNCORRELATED] = "1.0 / ((1.0 + mf_lambda(wi.z, length(wi.xy))) * (1.0 + mf_lambda(wo.z, length(wo.xy))))",
-	[GAF_CORRELATED] = "1.0 / (1.0 + mf_lambda(wi.z, length(wi.xy)) + mf_lambda(wo.z, length(wo.xy)))",
-	[GAF_V_GROOVE] = "min(1.0, 4.0 * h.z * (min(wi.z, wo.z) / size))",
-};
-
-static void write_lobe(struct glsl *glsl)
+/* With axes D is that of a normal, Lambda that of a direction, whose x and y are scaled. */
+static void write_lobe(struct glsl *glsl, bool axes)
 {
-	fprintf(glsl->file,
-		"float mf_lobe(vec3 wi, vec3 wo)\n{\n"
-		"\tfloat size = length(wi + wo);\n"
-		"\tvec3 h = (wi + wo) / size;\n"
-		"\tfloat G = %s;\n"
-		"\treturn mf_F(min(0.5 * size, 1.0)) * mf_D(h) * G / (4.0 * wi.z) / wo.z;\n}\n\n",
-		G[glsl->model->gaf]);
+	lines(glsl, "float mf_lobe(vec3 wi, vec3 wo)\n{\n"
+		    "\tfloat size = length(wi + wo);\n"
+		    "\tvec3 h = (wi + wo) / size;\n"
+		    "\tfloat G = ");
+	if (glsl->model->gaf == GAF_V_GROOVE)
+		lines(glsl, "min(1.0, 4.0 * h.z * (min(wi.z, wo.z) / size))");
+	else
+		fprintf(glsl->file,
+			glsl->model->gaf == GAF_CORRELATED
+				? "1.0 / (1.0 + mf_lambda(wi.z, length(%s)) + mf_lambda(wo.z, length(%s)))"
+				: "1.0 / ((1.0 + mf_lambda(wi.z, length(%s))) * (1.0 + mf_lambda(wo.z, length(%s))))",
+			axes ? "(mf_turn(wi) * MF_STRETCH).xy" : "wi.xy",
+			axes ? "(mf_turn(wo) * MF_STRETCH).xy" : "wo.xy");
+	fprintf(glsl->file, ";\n\treturn mf_F(min(0.5 * size, 1.0)) * mf_D(%s) * G / (4.0 * wi.z) / wo.z;\n}\n\n",
+		axes ? "mf_turn(h) / MF_STRETCH" : "h");
+}
+
+/* Directions as the axes of the roughness see them, and how much longer each axis is than their mean. The half vector is
+ * turned, not the directions that it is the sum of: that would cost it digits. */
+static void write_axes(struct glsl *glsl)
+{
+	const struct ndf *ndf = &glsl->model->ndf;
+	const double mean = roughness(ndf);
+	const double c = ndf->angle == 0 ? 1 : ndf->turn_cos, s = ndf->angle == 0 ? 0 : ndf->turn_sin;
+	char text[2][CSV_NUMBER_SIZE];
+	fprintf(glsl->file, "const vec3 MF_STRETCH = vec3(%s, %s, 1.0);\n", literal(glsl, text[0], ndf->sigma_x / mean),
+		literal(glsl, text[1], ndf->sigma_y / mean));
+	constant(glsl, "MF_COS", fabs(c) < 1e-30 ? 0 : c);
+	constant(glsl, "MF_SIN", fabs(s) < 1e-30 ? 0 : s);
+	lines(glsl, "\nvec3 mf_turn(vec3 w)\n{\n"
+		    "\treturn vec3(MF_COS * w.x + MF_SIN * w.y, MF_COS * w.y - MF_SIN * w.x, w.z);\n}\n\n");
 }
 
 static void write_model(struct glsl *glsl, bool specular)
@@ -412,7 +437,9 @@ static enum status write_shader(struct glsl *glsl, const struct export *export, 
 		status = write_D(glsl, error);
 		if (glsl->model->gaf != GAF_V_GROOVE)
 			write_lambda(glsl, table);
-		write_lobe(glsl);
+		if (export_has_axes(glsl->model))
+			write_axes(glsl);
+		write_lobe(glsl, export_has_axes(glsl->model));
 	}
 	write_model(glsl, specular);
 	lines(glsl, "\n::end shader\n");

@@ -3,10 +3,12 @@
  *     f_c = (1 - max F) baseColor_c / pi + F_c D G / (4 cos_i cos_o),
  *     F_c = s (F0_c + (1 - F0_c) (1 - cos_d)^5),  F0_c = min(1, ((n-1)/(n+1))^2 specularColor_c),
  * D of GGX with sigma = roughness^2, G height-correlated: so every export is approximate, and its error is measured with
- * that formula. s = max ks, specularColor = ks/s. */
-#include "fit/error/entries.h"
+ * that formula. s = max ks, specularColor = ks/s.
+ *
+ * KHR_materials_anisotropy: along the tangent, turned counter-clockwise by anisotropyRotation, the roughness is
+ * mix(sigma, 1, anisotropyStrength^2), the larger one; across it is sigma. */
+#include "fit/error/entry_at.h"
 #include "fit/error/error_sum.h"
-#include "fit/error/sample_set.h"
 #include "fit/export/export_format.h"
 #include "fit/export/substitute.h"
 #include "fit/results/csv_number.h"
@@ -39,38 +41,35 @@ static void gltf_f(const struct cook_torrance *model, struct vec3 wi, struct vec
 		f[c] = (1 - largest) * model->kd[c] * M_1_PI + F[c] * DG;
 }
 
-/* Sums of row i of the table: w |m - f| and w m. */
-static void add_row(const struct export *export, const struct measurement *measurement, const struct entries *entries,
-		    int i, double sum[2])
+enum { PARTS = 90 }; /* each summed by one thread, in its order */
+
+/* Sums of part i of the entries: w |m - f| and w m. */
+static void add_part(const struct export *export, const struct measurement *measurement, const struct entries *entries,
+		     size_t i, double sum[2])
 {
-	const struct fit_options *fit = export->source.fit;
-	const double min_cos = max_theta_cos(fit->criterion.max_theta);
-	for (int j = 0; j < MERL_THETA_D; j++)
-		for (int k = 0; k < measurement->n_phi_d; k++) {
-			const size_t at = measurement_at(measurement->n_phi_d, i, j, k);
-			struct vec3 wi, wo;
-			double f[3];
-			entries_dirs(entries, i, j, k, &wi, &wo);
-			if (entry_is_missing(measurement, &fit->criterion, at) || !entry_in_range(wi, wo, min_cos))
-				continue;
-			gltf_f(&export->model, wi, wo, f);
-			const double w = weight_at(fit->criterion.weight, i, j, wi.z, wo.z);
-			for (int c = 0; c < MERL_CHANNELS; c++) {
-				sum[0] += error_term(w, (double)measurement->value[c][at], f[c]);
-				sum[1] += w * (double)measurement->value[c][at];
-			}
+	const size_t n = measurement_count(measurement);
+	for (size_t at = i * n / PARTS; at < (i + 1) * n / PARTS; at++) {
+		struct entry_at entry;
+		double f[3];
+		if (!entry_at(measurement, entries, &export->source.fit->criterion, at, &entry))
+			continue;
+		gltf_f(&export->model, entry.wi, entry.wo, f);
+		for (int c = 0; c < MERL_CHANNELS; c++) {
+			sum[0] += error_term(entry.weight, entry.value[c], f[c]);
+			sum[1] += entry.weight * entry.value[c];
 		}
+	}
 }
 
 /* E of what a viewer makes of the model. */
 static double gltf_error(const struct export *export, const struct measurement *measurement)
 {
 	const struct entries entries = entries_make(export->source.fit->criterion.bins, measurement->n_phi_d);
-	double sum[MERL_THETA_H][2] = {{0}}, difference = 0, all = 0;
+	double sum[PARTS][2] = {{0}}, difference = 0, all = 0;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(export->source.fit->threads)
-	for (int i = 0; i < MERL_THETA_H; i++)
-		add_row(export, measurement, &entries, i, sum[i]);
-	for (int i = 0; i < MERL_THETA_H; i++) {
+	for (size_t i = 0; i < PARTS; i++)
+		add_part(export, measurement, &entries, i, sum[i]);
+	for (size_t i = 0; i < PARTS; i++) {
 		difference += sum[i][0];
 		all += sum[i][1];
 	}
@@ -119,7 +118,8 @@ enum {
 	VERTICES = (MERIDIANS + 1) * (PARALLELS + 1),
 	INDICES = MERIDIANS * (PARALLELS - 1) * 6,
 	INDEX_BYTES = INDICES * 2,
-	VERTEX_BYTES = VERTICES * 3 * 4
+	VERTEX_BYTES = VERTICES * 3 * 4,
+	TANGENT_BYTES = VERTICES * 4 * 4
 };
 
 /* Base64, of bytes that come one at a time. */
@@ -155,10 +155,25 @@ static void put_float(struct base64 *to, double value)
 		put_byte(to, bits >> shift & 255);
 }
 
+/* To the right along the parallels; the bitangent points to the upper pole. Padded with zeros to base64's 3 bytes. */
+static void put_tangents(struct base64 *to)
+{
+	for (int n = 0; n < VERTICES; n++) {
+		const double phi = 2 * M_PI * (n % (MERIDIANS + 1)) / MERIDIANS;
+
+		put_float(to, cos(phi));
+		put_float(to, 0);
+		put_float(to, -sin(phi));
+		put_float(to, 1);
+	}
+	while (to->n % 3)
+		put_byte(to, 0);
+}
+
 /* Indices and positions, which are the normals too; both are multiples of 3 bytes long. Poles are along y; at them one of
  * the two triangles has no area and is left out. */
 _Static_assert(INDEX_BYTES % 12 == 0 && VERTEX_BYTES % 3 == 0, "base64 without padding, aligned floats");
-static void write_sphere(FILE *file)
+static void write_sphere(FILE *file, bool tangents)
 {
 	struct base64 to = {file, 0, 0};
 
@@ -179,10 +194,14 @@ static void write_sphere(FILE *file)
 		put_float(&to, cos(theta));
 		put_float(&to, sin(theta) * cos(phi));
 	}
+	if (tangents)
+		put_tangents(&to);
 }
 
-static void write_scene(FILE *file)
+static void write_scene(FILE *file, bool tangents)
 {
+	const int bytes = INDEX_BYTES + VERTEX_BYTES + (tangents ? (TANGENT_BYTES + 2) / 3 * 3 : 0);
+
 	fprintf(file,
 		"  \"scene\": 0,\n  \"scenes\": [{\"nodes\": [0, 1, 2]}],\n  \"nodes\": [\n"
 		"    {\"name\": \"sphere\", \"mesh\": 0},\n"
@@ -194,20 +213,30 @@ static void write_scene(FILE *file)
 		"\"znear\": 0.1, \"zfar\": 100}}],\n"
 		"  \"extensions\": {\"KHR_lights_punctual\": {\"lights\": [{\"type\": \"directional\", "
 		"\"intensity\": 3}]}},\n"
-		"  \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 1, \"NORMAL\": 1}, \"indices\": 0, "
-		"\"material\": 0}]}],\n");
+		"  \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 1, \"NORMAL\": 1%s}, \"indices\": 0, "
+		"\"material\": 0}]}],\n",
+		tangents ? ", \"TANGENT\": 2" : "");
 	fprintf(file,
 		"  \"accessors\": [\n"
 		"    {\"bufferView\": 0, \"componentType\": 5123, \"count\": %d, \"type\": \"SCALAR\"},\n"
 		"    {\"bufferView\": 1, \"componentType\": 5126, \"count\": %d, \"type\": \"VEC3\", \"min\": [-1, -1, "
 		"-1], "
-		"\"max\": [1, 1, 1]}\n  ],\n"
-		"  \"bufferViews\": [\n"
+		"\"max\": [1, 1, 1]}",
+		INDICES, VERTICES);
+	if (tangents)
+		fprintf(file, ",\n    {\"bufferView\": 2, \"componentType\": 5126, \"count\": %d, \"type\": \"VEC4\"}",
+			VERTICES);
+	fprintf(file,
+		"\n  ],\n  \"bufferViews\": [\n"
 		"    {\"buffer\": 0, \"byteLength\": %d, \"target\": 34963},\n"
-		"    {\"buffer\": 0, \"byteOffset\": %d, \"byteLength\": %d, \"target\": 34962}\n  ],\n"
-		"  \"buffers\": [{\"byteLength\": %d, \"uri\": \"data:application/octet-stream;base64,",
-		INDICES, VERTICES, INDEX_BYTES, INDEX_BYTES, VERTEX_BYTES, INDEX_BYTES + VERTEX_BYTES);
-	write_sphere(file);
+		"    {\"buffer\": 0, \"byteOffset\": %d, \"byteLength\": %d, \"target\": 34962}",
+		INDEX_BYTES, INDEX_BYTES, VERTEX_BYTES);
+	if (tangents)
+		fprintf(file, ",\n    {\"buffer\": 0, \"byteOffset\": %d, \"byteLength\": %d, \"target\": 34962}",
+			INDEX_BYTES + VERTEX_BYTES, TANGENT_BYTES);
+	fprintf(file, "\n  ],\n  \"buffers\": [{\"byteLength\": %d, \"uri\": \"data:application/octet-stream;base64,",
+		bytes);
+	write_sphere(file, tangents);
 	fprintf(file, "\"}]\n}\n");
 }
 
@@ -219,10 +248,22 @@ static double reflectance(double n)
 	return (n - 1) / (n + 1) * ((n - 1) / (n + 1));
 }
 
+static void write_anisotropy(FILE *file, const struct ndf *ndf)
+{
+	const double low = fmin(ndf->sigma_x, ndf->sigma_y), high = fmax(ndf->sigma_x, ndf->sigma_y);
+	const double angle = (ndf->angle + (ndf->sigma_x < ndf->sigma_y ? 90 : 0)) * M_PI / 180;
+	char strength[CSV_NUMBER_SIZE], rotation[CSV_NUMBER_SIZE];
+
+	fprintf(file,
+		"        \"KHR_materials_anisotropy\": {\"anisotropyStrength\": %s, \"anisotropyRotation\": %s},\n",
+		csv_number(strength, sqrt((high - low) / (1 - low))), csv_number(rotation, angle));
+}
+
 static enum status gltf_write(const struct export *export, FILE *file, struct error *error)
 {
 	const struct cook_torrance *model = &export->model;
 	const double s = export_max(model->ks), ior = fmin(model->n, ior_max);
+	const bool axes = export_has_axes(model);
 	char name[EXPORT_NAME], text[CSV_NUMBER_SIZE];
 	(void)error;
 	export_identifier(export, name);
@@ -233,15 +274,18 @@ static enum status gltf_write(const struct export *export, FILE *file, struct er
 	export_comment(export, file, "        \"", "\",");
 	fprintf(file,
 		"        \"\"\n      ]\n    }\n  },\n"
-		"  \"extensionsUsed\": [\"KHR_lights_punctual\", \"KHR_materials_ior\", \"KHR_materials_specular\"],\n"
+		"  \"extensionsUsed\": [\"KHR_lights_punctual\", \"KHR_materials_ior\", "
+		"\"KHR_materials_specular\"%s],\n"
 		"  \"materials\": [\n    {\n      \"name\": \"%s\",\n      \"pbrMetallicRoughness\": {\n"
 		"        \"baseColorFactor\": [",
-		name);
+		axes ? ", \"KHR_materials_anisotropy\"" : "", name);
 	write_rgb(file, model->kd, 1);
 	fprintf(file, ", 1],\n        \"metallicFactor\": 0,\n        \"roughnessFactor\": %s\n      },\n",
-		csv_number(text, s > 0 ? sqrt(model->ndf.sigma_x) : 1));
-	fprintf(file, "      \"extensions\": {\n        \"KHR_materials_ior\": {\"ior\": %s},\n",
-		csv_number(text, s > 0 ? ior : 1.5));
+		csv_number(text, s > 0 ? sqrt(fmin(model->ndf.sigma_x, model->ndf.sigma_y)) : 1));
+	fprintf(file, "      \"extensions\": {\n");
+	if (axes)
+		write_anisotropy(file, &model->ndf);
+	fprintf(file, "        \"KHR_materials_ior\": {\"ior\": %s},\n", csv_number(text, s > 0 ? ior : 1.5));
 	fprintf(file,
 		"        \"KHR_materials_specular\": {\n          \"specularFactor\": %s,\n          "
 		"\"specularColorFactor\": [",
@@ -249,7 +293,7 @@ static enum status gltf_write(const struct export *export, FILE *file, struct er
 	const double scale = model->n > ior_max ? reflectance(model->n) / reflectance(ior_max) : 1;
 	write_rgb(file, model->ks, s > 0 ? scale / s : 0);
 	fprintf(file, "]\n        }\n      }\n    }\n  ],\n");
-	write_scene(file);
+	write_scene(file, axes);
 	return STATUS_OK;
 }
 

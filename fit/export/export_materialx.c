@@ -37,7 +37,7 @@ static double mean_fresnel(const struct cook_torrance *model)
 }
 
 /* Implementations are expected to give rough surfaces back what facets reflect more than once, by a factor on the lobe: by how
- * much, seen along the normal, with the specification's formula. */
+ * much, seen along the normal, with the specification's formula; 0 for none, and of anisotropic lobes. */
 static double compensation(const struct cook_torrance *model)
 {
 	struct cook_torrance mirror = *model;
@@ -56,14 +56,19 @@ static enum status materialx_prepare(struct export *export, struct error *error)
 	if (export_max(export->model.kd) > 1)
 		return error_set(error, STATUS_UNSUPPORTED, "MaterialX has no reflectance above 1: kd is up to %.5g",
 				 export_max(export->model.kd));
-	if (!export->substitute)
+	if (!export->substitute && export_has_axes(&export->model))
+		snprintf(export->why, sizeof export->why,
+			 "approximate: the model itself, but MaterialX computes G of an anisotropic lobe from the mean "
+			 "roughness");
+	else if (!export->substitute)
 		export_as_it_is(export, "the model itself");
 	const size_t used = strlen(export->why);
-	if (export_max(export->model.ks) > 0)
+	const double more = compensation(&export->model);
+	if (more > 0)
 		snprintf(export->why + used, sizeof export->why - used,
 			 "; a renderer that makes up for further reflections between facets shows %.2g %% more of the "
 			 "lobe along the normal",
-			 100 * compensation(&export->model));
+			 100 * more);
 	return STATUS_OK;
 }
 
@@ -182,6 +187,7 @@ static enum status materialx_write(const struct export *export, FILE *file, stru
 	/* A name does not begin with a digit. */
 	snprintf(material, sizeof material, "%s%s", *identifier >= '0' && *identifier <= '9' ? "_" : "", identifier);
 	export_comment(export, file, "<!-- ", " -->");
+	export_comment_axes(export, file, "<!-- ", "the first roughness is that along the tangent Tworld", " -->");
 	fprintf(file, "<materialx version=\"1.39\" colorspace=\"lin_rec709\">\n");
 	const char *bsdf = write_bsdf(file, &export->model, material);
 	begin_node(file, "surface", "surfaceshader", material, "_surface");

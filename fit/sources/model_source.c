@@ -25,9 +25,9 @@ static const char *first_given(const struct options *options, const char *const 
 }
 
 /* Options that control a fit and do not describe a model. */
-static const char *const of_a_fit[] = {"weight", "unbounded", "no-diffuse", "no-specular", "gray", NULL};
+static const char *const of_a_fit[] = {"weight", "unbounded", "no-diffuse", "no-specular", "gray", "anisotropic", NULL};
 /* Options that a row determines. */
-static const char *const of_a_model[] = {"kd",  "ks",     "sigma", "gamma",   "ior",       "k",
+static const char *const of_a_model[] = {"kd",  "ks",     "sigma", "angle",   "gamma",     "ior", "k",
 					 "gaf", "lambda", "bins",  "fresnel", "max-theta", NULL};
 
 static bool is_json(const char *path)
