@@ -136,6 +136,20 @@ static void fits_and_tables_make_sheets(void **state)
 	stdfit("render m.binary " CHEAP " " QUICK);
 	expect_code(0);
 	expect_out("\nm,ggx,");
+	/* These have the weight that pictures agree with best, which is told; who names a weight gets that. */
+	char *own = strdup(last.out);
+	stdfit("render m.binary " CHEAP " " QUICK);
+	expect_error(0, "fitted under --weight solid-angle");
+	assert_string_equal(last.out, own);
+	stdfit("render m.binary --weight solid-angle " CHEAP " " QUICK);
+	assert_string_equal(last.err, "");
+	assert_string_equal(last.out, own);
+	stdfit("render m.binary --weight none " CHEAP " " QUICK);
+	assert_string_equal(last.err, "");
+	assert_string_not_equal(last.out, own);
+	stdfit("render fits.csv " QUICK);
+	assert_string_equal(last.err, "");
+	free(own);
 	/* compare shows the same errors beside its own. */
 	stdfit("compare fits.csv --pictures");
 	expect_code(0);

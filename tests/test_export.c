@@ -733,7 +733,7 @@ static void a_fit_and_its_row_export_alike(void **state)
 	expect_code(0);
 	stdfit("fit m.binary --ndf std,ggx --max-theta 12 --threads 1 -o fits.csv -q");
 	expect_code(0);
-	export_it("m.binary --format json --ndf std --max-theta 12 --threads 1 -o fit.json");
+	export_it("m.binary --format json --ndf std --weight none --max-theta 12 --threads 1 -o fit.json");
 	export_it("m.binary --from fits.csv --ndf std --format json -o row.json");
 	char *fit = slurp("fit.json"), *row = slurp("row.json");
 	assert_string_equal(fit, row);
@@ -754,6 +754,29 @@ static void a_fit_and_its_row_export_alike(void **state)
 	expect_code(0);
 	export_it("--from fits.csv --row 2 --format mitsuba");
 	expect_out("against a table of the model itself");
+}
+
+/* What is exported is to be looked at: a fit made for it is under the weight that pictures agree with, and that is told. */
+static void its_own_fit_looks_right(void **state)
+{
+	(void)state;
+	stdfit("synth looks.binary --kd 0.2,0.1,0.05 --ks 0.5 --sigma 0.2 --gamma 1.8 --noise 0.1 --threads 1");
+	expect_code(0);
+	stdfit("export looks.binary --format json --ndf ggx --max-theta 12 --threads 1");
+	expect_error(0, "fitted under --weight solid-angle");
+	expect_out("\"weight\": \"solid-angle\"");
+	stdfit("export looks.binary --format json --ndf ggx --max-theta 12 --threads 1 -q");
+	assert_string_equal(last.err, "");
+	expect_out("\"weight\": \"solid-angle\"");
+	/* Whoever names a weight gets it, and a row keeps its own: nothing is told. */
+	stdfit("export looks.binary --format json --ndf ggx --max-theta 12 --weight cosine --threads 1");
+	assert_string_equal(last.err, "");
+	expect_out("\"weight\": \"cosine\"");
+	stdfit("fit looks.binary --ndf ggx --max-theta 12 --threads 1 -o looks.csv -q");
+	expect_code(0);
+	stdfit("export looks.binary --from looks.csv --format json");
+	assert_string_equal(last.err, "");
+	expect_out("\"weight\": \"none\"");
 }
 
 static void refusals_are_one_line(void **state)
@@ -913,6 +936,7 @@ int main(void)
 		cmocka_unit_test(escapes_and_big_numbers_are_read),
 		cmocka_unit_test(damaged_json_is_read_or_refused),
 		cmocka_unit_test(a_fit_and_its_row_export_alike),
+		cmocka_unit_test(its_own_fit_looks_right),
 		cmocka_unit_test(refusals_are_one_line),
 	};
 

@@ -159,6 +159,15 @@ static void files_are_fitted_first(void **state)
 	expect_code(0);
 	shell("cmp new/index.html again/index.html");
 	expect_code(0);
+	expect_in_page("new/index.html", "weight=solid-angle", true);
+	stdfit("report a.binary -o told " SPHERES " " CHEAP);
+	drop_no_png();
+	expect_error(0, "fitted under --weight solid-angle");
+	stdfit("report a.binary --weight none -o named " SPHERES " " CHEAP);
+	expect_code(0);
+	drop_no_png();
+	assert_string_equal(last.err, "");
+	expect_in_page("named/index.html", "weight=none", true);
 	expect_whole("new/index.html");
 	expect_in_page("new/index.html", "<title>stdfit: fits of a</title>", true);
 	/* Why one has no fit is told once, and in the page. */

@@ -263,6 +263,21 @@ int options_usage(enum command command, const char *format, ...)
 	return EXIT_USAGE;
 }
 
+/* Whether what a command makes is to be looked at. Then its own fits have the weight that pictures agree with best. */
+static bool makes_pictures(enum command command)
+{
+	return command == COMMAND_RENDER || command == COMMAND_PLOT || command == COMMAND_REPORT ||
+	       command == COMMAND_EXPORT;
+}
+
+void options_say_weight(const struct options *options)
+{
+	if (makes_pictures(options->command) && !options->quiet && !options_given(options, "weight"))
+		report_error(
+			"fitted under --weight %s, with which pictures agree best; --weight none is the paper's error",
+			weight_name(options->fit.criterion.weight));
+}
+
 struct options options_default(enum command command)
 {
 	struct options options = {
@@ -290,6 +305,8 @@ struct options options_default(enum command command)
 	}
 	if (command == COMMAND_BENCH || command == COMMAND_EXPORT)
 		options.fit.n_ndf = 1;
+	if (makes_pictures(command))
+		options.fit.criterion.weight = WEIGHT_SOLID_ANGLE;
 	return options;
 }
 

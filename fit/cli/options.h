@@ -83,6 +83,10 @@ MUST_CHECK int options_model(const struct options *options, struct cook_torrance
 /* options_check_fit - whether the options of a fit go together. Returns -1, or EXIT_USAGE with a message on standard error. */
 MUST_CHECK int options_check_fit(const struct options *options);
 
+/* options_say_weight - on standard error, unless --quiet or --weight is given: under which weight a command has fitted whose
+ * output is to be looked at (render, plot, report, export). */
+void options_say_weight(const struct options *options);
+
 /* options_show - what a command prints on standard output: JSON if asked for, readable text if asked for or on a
  * terminal, else CSV. With -o only a terminal or --table gets anything; -o - is CSV unless --table asks for text. */
 enum show options_show(const struct options *options);

@@ -142,6 +142,8 @@ static enum status run(const struct options *options, int *wrong, struct error *
 	enum status status = model_source_read(options, options->n_paths ? options->path[0] : NULL, &source, error);
 	if (status != STATUS_OK)
 		return status;
+	if (model_source_kind(options) == SOURCE_FIT)
+		options_say_weight(options);
 	if (source.n > 1)
 		status =
 			error_set(error, STATUS_FORMAT, "%zu rows are meant: choose one with --ndf or --row", source.n);

@@ -202,6 +202,8 @@ static int show_files(struct render *render, const struct files *files)
 	for (size_t i = 0; i < files->n && !*options->cancel; i++)
 		failed += show_file(render, files->path[i]) != STATUS_OK;
 	progress_erase(&render->progress);
+	if (model_source_kind(options) == SOURCE_FIT && failed < files->n && !*options->cancel)
+		options_say_weight(options);
 	report_output(&render->output, options->to_standard_output ? SHOW_NOTHING : options_show(options),
 		      report_table);
 	if (*options->cancel)

@@ -217,6 +217,11 @@ static int fit_rows(struct csv_table *rows, const struct options *options)
 			report_error("out of memory");
 			code = EXIT_FAILED;
 		}
+	bool fitted = false;
+	for (size_t i = 0; i < rows->n_rows; i++)
+		fitted |= !result_failed(rows->row[i]);
+	if (fitted && code != EXIT_INTERRUPTED)
+		options_say_weight(options);
 	batch_free(&batch);
 	files_free(&files);
 	return code == EXIT_DONE && bad ? EXIT_FAILED : code;

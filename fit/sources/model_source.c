@@ -110,6 +110,7 @@ static enum status read_given(const struct options *options, const char *materia
 	struct source_model *model = add(source, options, material);
 	if (!model)
 		return no_memory(error);
+	model->fit.criterion.weight = WEIGHT_NONE; /* nothing was fitted */
 	return options_model(options, &model->model) < 0
 		       ? STATUS_OK
 		       : error_set(error, STATUS_DOMAIN, "the options describe no model");
