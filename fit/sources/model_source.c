@@ -24,11 +24,17 @@ static const char *first_given(const struct options *options, const char *const 
 	return *name;
 }
 
-/* Options that control a fit and do not describe a model. */
+/* Options that control a fit and do not describe a model; --weight comes first. */
 static const char *const of_a_fit[] = {"weight", "unbounded", "no-diffuse", "no-specular", "gray", "anisotropic", NULL};
 /* Options that a row determines. */
 static const char *const of_a_model[] = {"kd",  "ks",     "sigma", "angle",   "gamma",     "ior", "k",
 					 "gaf", "lambda", "bins",  "fresnel", "max-theta", NULL};
+
+/* An export fits a model in the place of another: the weight is of that fit. */
+static const char *first_of_a_fit(const struct options *options)
+{
+	return first_given(options, options->command == COMMAND_EXPORT ? of_a_fit + 1 : of_a_fit);
+}
 
 static bool is_json(const char *path)
 {
@@ -40,7 +46,7 @@ static int check_rows(const struct options *options)
 {
 	const char *ignored = first_given(options, of_a_model);
 	if (!ignored)
-		ignored = first_given(options, of_a_fit);
+		ignored = first_of_a_fit(options);
 	if (ignored)
 		return options_usage(options->command, "--%s and --from exclude each other", ignored);
 	if (options->row && options_given(options, "ndf"))
@@ -53,7 +59,7 @@ static int check_rows(const struct options *options)
 static int check_given(const struct options *options)
 {
 	struct cook_torrance model;
-	const char *ignored = first_given(options, of_a_fit);
+	const char *ignored = first_of_a_fit(options);
 	if (ignored)
 		return options_usage(options->command, "--%s means nothing without a fit, --kd and --ks give the model",
 				     ignored);
