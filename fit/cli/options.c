@@ -59,13 +59,14 @@ static const struct command_text commands[COMMAND_COUNT] = {
 			  "above the horizon per channel (1/sr), the directional albedo of the data at 0, 30 and 60\n"
 			  "degrees with the share of the hemisphere that is measured, and what looks wrong.\n"},
 	[COMMAND_EXPORT] =
-		{"export", "[FILE]", "a model for another program: BRDF Explorer, Mitsuba 3, pbrt-v4, glTF, ...",
+		{"export", "[FILE]", "a model for another program: BRDF Explorer, Mitsuba 3, pbrt-v4, MaterialX, ...",
 		 "Writes one model: fitted to FILE, from the row of FILE's material in a result table, from\n"
 		 "any row of it (--row), or from given parameters (--kd, --ks, ...). The first lines say\n"
 		 "whether the export is exact or approximate, and why. Where the target has no such model, one\n"
 		 "that it has is fitted in its place, to FILE or the file of the row if that can be read, else\n"
-		 "to the model's own table; the export says what that costs in error. bsdf and bsdf-rgb (spectra,\n"
-		 "rgb) are for the measured materials of pbrt-v4 and Mitsuba 3: any model, as a table.\n"},
+		 "to the model's own table, under --weight, solid-angle by default; the export says what that\n"
+		 "costs in error and how it looks. bsdf and bsdf-rgb (spectra, rgb) are for the measured materials\n"
+		 "of pbrt-v4 and Mitsuba 3: any model, as a table.\n"},
 	[COMMAND_NDF] =
 		{"ndf", "[NAME]", "D, P22, P2, Lambda, G1 and pdf of a distribution as a table",
 		 "Tabulates a normal distribution function: D and pdf of the normal at theta and phi, P22 of its\n"

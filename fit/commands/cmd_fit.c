@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* stdfit fit - MERL files to a result table. */
 #include "data_readers/atomic_file.h"
+#include "data_readers/text_quote.h"
 #include "fit/cli/messages.h"
 #include "fit/cli/outputs.h"
 #include "fit/cli/report.h"
@@ -11,6 +12,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 struct sink {
 	const struct options *options;

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "data_readers/text_quote.h"
+#include "fit/error/entries.h"
 #include "fit/error/model_table.h"
+#include "fit/error/sample_set.h"
 #include "fit/export/export_format.h"
 #include "fit/results/csv_number.h"
 
@@ -9,7 +11,7 @@
 static const struct export_target *const targets[EXPORT_FORMATS] = {
 	[EXPORT_BRDF] = &export_brdf, [EXPORT_MERL] = &export_merl,         [EXPORT_MITSUBA] = &export_mitsuba,
 	[EXPORT_PBRT] = &export_pbrt, [EXPORT_GLTF] = &export_gltf,         [EXPORT_JSON] = &export_json,
-	[EXPORT_BSDF] = &export_bsdf, [EXPORT_BSDF_RGB] = &export_bsdf_rgb,
+	[EXPORT_BSDF] = &export_bsdf, [EXPORT_BSDF_RGB] = &export_bsdf_rgb, [EXPORT_MATERIALX] = &export_materialx,
 };
 
 const char *export_format_name(enum export_format format)
@@ -30,6 +32,11 @@ enum status export_format_find(const char *name, enum export_format *format)
 bool export_wants_samples(enum export_format format, const struct cook_torrance *model)
 {
 	return targets[format]->replaces && targets[format]->replaces(model);
+}
+
+bool export_has_substitutes(enum export_format format)
+{
+	return targets[format]->replaces != NULL;
 }
 
 bool export_is_binary(enum export_format format)
@@ -53,6 +60,34 @@ enum status export_table(const struct export *export, struct measurement *measur
 {
 	return model_table(&export->model, export->source.fit->criterion.bins, 180, 90, export->source.fit->threads,
 			   measurement);
+}
+
+bool export_shows_model(const struct export *export)
+{
+	return !targets[export->format]->shows;
+}
+
+enum status export_shown_table(const struct export *export, struct measurement *measurement)
+{
+	const int n_phi_d = 180;
+	const struct entries entries = entries_make(export->source.fit->criterion.bins, n_phi_d);
+	const enum status status = measurement_alloc(measurement, n_phi_d);
+	if (status != STATUS_OK)
+		return status;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(export->source.fit->threads)
+	for (int i = 0; i < MERL_THETA_H; i++)
+		for (int jk = 0; jk < MERL_THETA_D * n_phi_d; jk++) {
+			const int j = jk / n_phi_d, k = jk % n_phi_d;
+			struct vec3 wi, wo;
+			double f[3];
+			entries_dirs(&entries, i, j, k, &wi, &wo);
+			if (!entry_in_range(wi, wo, 0))
+				continue;
+			targets[export->format]->shows(&export->model, wi, wo, f);
+			for (int c = 0; c < MERL_CHANNELS; c++)
+				measurement->value[c][measurement_at(n_phi_d, i, j, k)] = (float)f[c];
+		}
+	return STATUS_OK;
 }
 
 bool export_has_axes(const struct cook_torrance *model)
@@ -125,6 +160,8 @@ void export_comment(const struct export *export, FILE *file, const char *before,
 	comment_line(file, before, export->why, after);
 	if (*export->cost)
 		comment_line(file, before, export->cost, after);
+	if (*export->pictures)
+		comment_line(file, before, export->pictures, after);
 	export_describe(export, text);
 	comment_line(file, before, text, after);
 	snprintf(text, sizeof text, "written by stdfit %s", STDFIT_VERSION);

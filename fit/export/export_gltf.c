@@ -2,14 +2,13 @@
 /* glTF 2.0 with KHR_materials_ior and KHR_materials_specular. Its dielectric is no sum but a layer,
  *     f_c = (1 - max F) baseColor_c / pi + F_c D G / (4 cos_i cos_o),
  *     F_c = s (F0_c + (1 - F0_c) (1 - cos_d)^5),  F0_c = min(1, ((n-1)/(n+1))^2 specularColor_c),
- * D of GGX with sigma = roughness^2, G height-correlated: so every export is approximate, and its error is measured with
- * that formula. s = max ks, specularColor = ks/s.
+ * D of GGX with sigma = roughness^2, G height-correlated. So every export with a lobe is approximate, and is fitted in these terms
+ * [gltf_fit.h]. specularFactor s is 1 (0 without a lobe), since not every importer reads it; ks is specularColor.
  *
  * KHR_materials_anisotropy: along the tangent, turned counter-clockwise by anisotropyRotation, the roughness is
  * mix(sigma, 1, anisotropyStrength^2), the larger one; across it is sigma. */
-#include "fit/error/entry_at.h"
-#include "fit/error/error_sum.h"
 #include "fit/export/export_format.h"
+#include "fit/export/gltf_fit.h"
 #include "fit/export/substitute.h"
 #include "fit/results/csv_number.h"
 
@@ -23,83 +22,102 @@ static const struct target target = {
 	.sigma_max = 1,
 };
 
+/* The model as a material, and back: F0_c = F0(n) ks_c. */
+static double reflectance(double n)
+{
+	return (n - 1) / (n + 1) * ((n - 1) / (n + 1));
+}
+
+static struct gltf_material material_of(const struct cook_torrance *model)
+{
+	struct gltf_material material = {.ndf = model->ndf, .specular = export_max(model->ks) > 0};
+	for (int c = 0; c < 3; c++) {
+		material.base[c] = model->kd[c];
+		material.F0[c] = fmin(reflectance(model->n) * model->ks[c], 1);
+	}
+	return material;
+}
+
+static void set_material(struct cook_torrance *model, const struct gltf_material *material)
+{
+	const double F0 = export_max(material->F0), root = sqrt(fmin(F0, 0.99));
+	model->ndf = material->ndf;
+	model->n = (1 + root) / (1 - root);
+	for (int c = 0; c < 3; c++) {
+		model->kd[c] = material->base[c];
+		model->ks[c] = F0 > 0 ? material->F0[c] / (root * root) : 1;
+	}
+}
+
 /* What a viewer makes of the model. */
 static void gltf_f(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo, double f[3])
 {
-	struct cook_torrance lobe = *model;
-	const double s = export_max(model->ks), root = (model->n - 1) / (model->n + 1);
-	const double x = 1 - fmin(0.5 * vec3_length(vec3_add(wi, wo)), 1);
-	double F[3], largest = 0;
-	lobe.fresnel = FRESNEL_NONE;
-	const double DG = s > 0 ? cook_torrance_lobe(&lobe, wi, wo) : 0;
-	for (int c = 0; c < 3; c++) {
-		const double F0 = s > 0 ? fmin(root * root * model->ks[c] / s, 1) : 0;
-		F[c] = s * (F0 + (1 - F0) * (x * x) * (x * x) * x);
-		largest = fmax(largest, F[c]);
-	}
-	for (int c = 0; c < 3; c++)
-		f[c] = (1 - largest) * model->kd[c] * M_1_PI + F[c] * DG;
+	const struct gltf_material material = material_of(model);
+	gltf_material_f(&material, wi, wo, f);
 }
 
-enum { PARTS = 90 }; /* each summed by one thread, in its order */
-
-/* Sums of part i of the entries: w |m - f| and w m. */
-static void add_part(const struct export *export, const struct measurement *measurement, const struct entries *entries,
-		     size_t i, double sum[2])
+static bool is_gray(const double x[3])
 {
-	const size_t n = measurement_count(measurement);
-	for (size_t at = i * n / PARTS; at < (i + 1) * n / PARTS; at++) {
-		struct entry_at entry;
-		double f[3];
-		if (!entry_at(measurement, entries, &export->source.fit->criterion, at, &entry))
-			continue;
-		gltf_f(&export->model, entry.wi, entry.wo, f);
-		for (int c = 0; c < MERL_CHANNELS; c++) {
-			sum[0] += error_term(entry.weight, entry.value[c], f[c]);
-			sum[1] += entry.weight * entry.value[c];
-		}
-	}
+	return x[0] == x[1] && x[1] == x[2];
 }
 
-/* E of what a viewer makes of the model. */
-static double gltf_error(const struct export *export, const struct measurement *measurement)
+/* The errors of the model and of what a viewer shows, under the weight of the fit first. */
+static enum status report_cost(struct export *export, const struct measurement *measurement,
+			       const struct gltf_material *material, struct error *error)
 {
-	const struct entries entries = entries_make(export->source.fit->criterion.bins, measurement->n_phi_d);
-	double sum[PARTS][2] = {{0}}, difference = 0, all = 0;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(export->source.fit->threads)
-	for (size_t i = 0; i < PARTS; i++)
-		add_part(export, measurement, &entries, i, sum[i]);
-	for (size_t i = 0; i < PARTS; i++) {
-		difference += sum[i][0];
-		all += sum[i][1];
+	const struct fit_options *fit = export->source.fit;
+	struct fit_metrics before;
+	double after[WEIGHT_COUNT];
+	const enum status status = fit_eval(measurement, export->source.model, fit, &before, error);
+	if (status != STATUS_OK)
+		return status;
+	for (enum weight weight = 0; weight < WEIGHT_COUNT; weight++) {
+		struct criterion criterion = fit->criterion;
+		criterion.weight = weight;
+		after[weight] = gltf_material_error(measurement, &criterion, fit->threads, material);
 	}
-	return error_ratio(difference, all);
+	substitute_cost(export, before.error, after);
+	return STATUS_OK;
+}
+
+/* Fits the material in its own terms, from the model on. */
+static enum status fit_material(struct export *export, const struct measurement *measurement, struct error *error)
+{
+	const struct fit_options *fit = export->source.fit;
+	const struct cook_torrance *model = export->source.model;
+	struct criterion criterion = fit->criterion;
+	struct gltf_material material = material_of(&export->model);
+	criterion.weight = export->source.weight;
+	if (material.specular && gltf_fit(measurement, &criterion, fit->threads,
+					  is_gray(model->kd) && is_gray(model->ks), &material) != STATUS_OK)
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	if (material.specular)
+		set_material(&export->model, &material);
+	export->substitute = true;
+	return report_cost(export, measurement, &material, error);
 }
 
 static enum status gltf_prepare(struct export *export, struct error *error)
 {
 	struct measurement own;
-	const enum status status = substitute_prepare(export, &target, error);
+	enum status status = substitute_prepare(export, &target, error);
 	if (status != STATUS_OK)
 		return status;
-	if (export_max(export->model.kd) > 1 || export_max(export->model.ks) > 1)
-		return error_set(error, STATUS_UNSUPPORTED,
-				 "glTF has no factor above 1: kd is up to %.5g, ks up to %.5g",
-				 export_max(export->model.kd), export_max(export->model.ks));
+	if (export_max(export->model.kd) > 1)
+		return error_set(error, STATUS_UNSUPPORTED, "glTF has no factor above 1: kd is up to %.5g",
+				 export_max(export->model.kd));
+	if (!(export_max(export->source.model->ks) > 0))
+		return export_as_it_is(export, "the model itself");
 	if (!export->substitute)
-		snprintf(export->why, sizeof export->why, "approximate: the model's own parameters, but");
+		snprintf(export->why, sizeof export->why, "approximate: glTF has no sum of two lobes");
 	const size_t used = strlen(export->why);
 	snprintf(export->why + used, sizeof export->why - used,
-		 "%s glTF takes what the surface reflects from the diffuse part", export->substitute ? ", and" : "");
+		 "; its lobe takes what it reflects from the diffuse part, and was fitted like that");
 	const struct measurement *measurement = substitute_measurement(&export->source, &own);
-	if (!measurement)
-		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	const size_t written = strlen(export->cost);
-	snprintf(export->cost + written, sizeof export->cost - written, "%serror of what a glTF viewer shows %.5g%s",
-		 written ? "; " : "", gltf_error(export, measurement),
-		 written || export->source.measurement ? "" : " (against a table of the model itself)");
+	status = measurement ? fit_material(export, measurement, error)
+			     : error_set(error, STATUS_NO_MEMORY, "out of memory");
 	measurement_free(&own);
-	return STATUS_OK;
+	return status;
 }
 
 /* Array elements, without brackets. */
@@ -243,11 +261,6 @@ static void write_scene(FILE *file, bool tangents)
 /* Importers take no ior of a metal's F0. What is above this goes into the colour, which may exceed 1: the same F0. */
 static const double ior_max = 2.5;
 
-static double reflectance(double n)
-{
-	return (n - 1) / (n + 1) * ((n - 1) / (n + 1));
-}
-
 static void write_anisotropy(FILE *file, const struct ndf *ndf)
 {
 	const double low = fmin(ndf->sigma_x, ndf->sigma_y), high = fmax(ndf->sigma_x, ndf->sigma_y);
@@ -262,7 +275,8 @@ static void write_anisotropy(FILE *file, const struct ndf *ndf)
 static enum status gltf_write(const struct export *export, FILE *file, struct error *error)
 {
 	const struct cook_torrance *model = &export->model;
-	const double s = export_max(model->ks), ior = fmin(model->n, ior_max);
+	const double ior = fmin(model->n, ior_max);
+	const bool lobe = export_max(model->ks) > 0;
 	const bool axes = export_has_axes(model);
 	char name[EXPORT_NAME], text[CSV_NUMBER_SIZE];
 	(void)error;
@@ -281,17 +295,17 @@ static enum status gltf_write(const struct export *export, FILE *file, struct er
 		axes ? ", \"KHR_materials_anisotropy\"" : "", name);
 	write_rgb(file, model->kd, 1);
 	fprintf(file, ", 1],\n        \"metallicFactor\": 0,\n        \"roughnessFactor\": %s\n      },\n",
-		csv_number(text, s > 0 ? sqrt(fmin(model->ndf.sigma_x, model->ndf.sigma_y)) : 1));
+		csv_number(text, lobe ? sqrt(fmin(model->ndf.sigma_x, model->ndf.sigma_y)) : 1));
 	fprintf(file, "      \"extensions\": {\n");
 	if (axes)
 		write_anisotropy(file, &model->ndf);
-	fprintf(file, "        \"KHR_materials_ior\": {\"ior\": %s},\n", csv_number(text, s > 0 ? ior : 1.5));
+	fprintf(file, "        \"KHR_materials_ior\": {\"ior\": %s},\n", csv_number(text, lobe ? ior : 1.5));
 	fprintf(file,
-		"        \"KHR_materials_specular\": {\n          \"specularFactor\": %s,\n          "
+		"        \"KHR_materials_specular\": {\n          \"specularFactor\": %d,\n          "
 		"\"specularColorFactor\": [",
-		csv_number(text, s));
+		lobe);
 	const double scale = model->n > ior_max ? reflectance(model->n) / reflectance(ior_max) : 1;
-	write_rgb(file, model->ks, s > 0 ? scale / s : 0);
+	write_rgb(file, model->ks, scale);
 	fprintf(file, "]\n        }\n      }\n    }\n  ],\n");
 	write_scene(file, axes);
 	return STATUS_OK;
@@ -304,4 +318,4 @@ static bool replaces(const struct cook_torrance *model)
 }
 
 const struct export_target export_gltf = {
-	.name = "gltf", .prepare = gltf_prepare, .write = gltf_write, .replaces = replaces};
+	.name = "gltf", .prepare = gltf_prepare, .write = gltf_write, .replaces = replaces, .shows = gltf_f};

@@ -90,13 +90,14 @@ static void choose_ndfs(const struct target *target, const struct cook_torrance 
 		fit->ndf[fit->n_ndf++] = ndf_find("beckmann");
 }
 
-/* The options of the fit: the source's data and weight, the target's lobe. */
+/* The options of the fit: the source's data, the target's lobe, the weight that is asked for. */
 static struct fit_options options_for(const struct target *target, const struct export_source *source)
 {
 	const struct cook_torrance *model = source->model;
 	struct fit_options fit = *source->fit;
 	choose_ndfs(target, model, &fit);
 	fit.criterion.gaf = target->gaf;
+	fit.criterion.weight = source->weight;
 	fit.fresnel = (target->fresnel & 1u << model->fresnel) ? model->fresnel : target->instead;
 	fit.lambda = LAMBDA_EXACT;
 	fit.sigma = fit.sigma_y = fit.angle = fit.gamma = fit.ior = NAN;
@@ -242,31 +243,34 @@ static void name_data(const struct export_source *source, char name[TEXT_QUOTE_S
 			 source->measurement ? "the measurement" : "a table of the model itself");
 }
 
-static enum status report_cost(struct export *export, const struct measurement *measurement, struct error *error)
+void substitute_cost(struct export *export, const double before[WEIGHT_COUNT], const double after[WEIGHT_COUNT])
 {
-	const struct fit_options *fit = export->source.fit;
-	const enum weight fitted = fit->criterion.weight;
-	struct fit_metrics before, after;
+	const enum weight fitted = export->source.weight;
+	const bool measured = export->source.measurement != NULL;
 	char name[TEXT_QUOTE_SIZE];
-	enum status status = fit_eval(measurement, export->source.model, fit, &before, error);
-	if (status == STATUS_OK)
-		status = fit_eval(measurement, &export->model, fit, &after, error);
-	if (status != STATUS_OK)
-		return status;
 	name_data(&export->source, name);
 	snprintf(export->cost, sizeof export->cost,
-		 "error of the model %.5g, of what stands here %.5g (weight %s, against %s)",
-		 export->source.measurement ? before.error[fitted] : 0.0, after.error[fitted], weight_name(fitted),
-		 name);
+		 "error of the model %.5g, of what stands here %.5g (weight %s, under which it was fitted, against %s)",
+		 measured ? before[fitted] : 0.0, after[fitted], weight_name(fitted), name);
 	for (enum weight weight = 0; weight < WEIGHT_COUNT; weight++) {
 		const size_t used = strlen(export->cost);
 
 		if (weight != fitted)
 			snprintf(export->cost + used, sizeof export->cost - used, "; weight %s: %.5g, %.5g",
-				 weight_name(weight), export->source.measurement ? before.error[weight] : 0.0,
-				 after.error[weight]);
+				 weight_name(weight), measured ? before[weight] : 0.0, after[weight]);
 	}
-	return STATUS_OK;
+}
+
+static enum status report_cost(struct export *export, const struct measurement *measurement, struct error *error)
+{
+	const struct fit_options *fit = export->source.fit;
+	struct fit_metrics before, after;
+	enum status status = fit_eval(measurement, export->source.model, fit, &before, error);
+	if (status == STATUS_OK)
+		status = fit_eval(measurement, &export->model, fit, &after, error);
+	if (status == STATUS_OK)
+		substitute_cost(export, before.error, after.error);
+	return status;
 }
 
 /* Uses the model as it is, its distribution under the name that the target has for it. */

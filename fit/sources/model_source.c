@@ -31,6 +31,12 @@ static const char *const of_a_fit[] = {"unbounded", "no-diffuse", "no-specular",
 static const char *const of_a_model[] = {"kd",  "ks",     "sigma", "angle",   "gamma",     "ior", "k",
 					 "gaf", "lambda", "bins",  "fresnel", "max-theta", NULL};
 
+/* An export fits a model in the place of another: the weight is of that fit. Elsewhere it chooses rows. */
+static bool weighs_substitute(const struct options *options)
+{
+	return options->command == COMMAND_EXPORT;
+}
+
 static bool is_json(const char *path)
 {
 	const size_t length = strlen(path);
@@ -44,7 +50,8 @@ static int check_rows(const struct options *options)
 		ignored = first_given(options, of_a_fit);
 	if (ignored)
 		return options_usage(options->command, "--%s and --from exclude each other", ignored);
-	const bool chosen = options_given(options, "ndf") || options_given(options, "weight");
+	const bool by_weight = options_given(options, "weight") && !weighs_substitute(options);
+	const bool chosen = options_given(options, "ndf") || by_weight;
 	if (options->row && chosen)
 		return options_usage(options->command, "--%s and --row exclude each other",
 				     options_given(options, "ndf") ? "ndf" : "weight");
@@ -56,7 +63,9 @@ static int check_rows(const struct options *options)
 static int check_given(const struct options *options)
 {
 	struct cook_torrance model;
-	const char *ignored = options_given(options, "weight") ? "weight" : first_given(options, of_a_fit);
+	const char *ignored = options_given(options, "weight") && !weighs_substitute(options)
+				      ? "weight"
+				      : first_given(options, of_a_fit);
 	if (ignored)
 		return options_usage(options->command, "--%s means nothing without a fit, --kd and --ks give the model",
 				     ignored);
@@ -125,7 +134,7 @@ static bool wanted(const struct options *options, char *const *row, size_t i, co
 		return i + 1 == (size_t)options->row;
 	if ((material && strcmp(row[RESULT_MATERIAL], material) != 0) || result_failed(row))
 		return false;
-	if (options_given(options, "weight") &&
+	if (options_given(options, "weight") && !weighs_substitute(options) &&
 	    strcmp(row[RESULT_WEIGHT], weight_name(options->fit.criterion.weight)) != 0)
 		return false;
 	if (!options_given(options, "ndf"))
