@@ -20,7 +20,7 @@ static enum status render(const struct studio *studio, const struct cook_torranc
 {
 	struct measured measured = {.value = NULL};
 	struct surface surface;
-	enum status status = table ? measured_init(&measured, table, studio->bins) : STATUS_OK;
+	enum status status = table ? measured_init(&measured, table, studio->bins, studio->options.threads) : STATUS_OK;
 	if (status != STATUS_OK)
 		return status;
 	status = surface_init(&surface, model, table ? &measured : NULL, SAMPLING_VISIBLE);
@@ -82,7 +82,10 @@ enum status export_pictures(struct export *export, struct measurement *measureme
 	enum status status = environment_named("studio", &studio.light);
 	if (status != STATUS_OK)
 		return status;
-	if (measurement)
+	/* What turns is shown as it is, with tangents. */
+	studio.options.tangents = (measurement && measurement_turns(measurement)) ||
+				  export->source.model->ndf.sigma_x != export->source.model->ndf.sigma_y;
+	if (measurement && !measurement_turns(measurement))
 		status = measurement_fill(measurement, studio.bins, fit->threads);
 	if (status == STATUS_OK)
 		status = compare(&studio, export, measurement);
