@@ -854,14 +854,16 @@ static void weights_stand_side_by_side(void **state)
 	expect_out("material,error_");
 	shell("sed 's/w[.]binary/v.binary/g' w-none.csv >share.csv; exec \"$STDFIT\" merge both.csv share.csv");
 	expect_error(1, "another --ndf or --weight");
-	/* A row is picked by its weight. */
+	/* Rows are picked by their weight; an export's weight is that of a substitute. */
 	stdfit("export w.binary --from both.csv --ndf ggx --format json");
-	expect_error(1, "choose one with --ndf, --weight or --row");
+	expect_error(1, "choose one with --ndf or --row");
 	stdfit("export w.binary --from both.csv --ndf ggx --weight solid-angle --format json");
+	expect_error(2, "--format json has every model");
+	stdfit("render w.binary --from both.csv --ndf ggx --weight solid-angle --size 16 --samples 4");
 	expect_code(0);
-	expect_out("\"weight\": \"solid-angle\"");
-	stdfit("export w.binary --from both.csv --row 1 --weight none --format json");
-	expect_error(2, "--weight and --row exclude each other");
+	expect_out("\nw,ggx,solid-angle,");
+	stdfit("render w.binary --from both.csv --ndf ggx --row 1 --weight none --size 16 --samples 4");
+	expect_error(2, "exclude each other");
 	stdfit("w.binary " CHEAP " --weight none,cosine --table");
 	expect_out("beckmann  cosine ");
 	stdfit("w.binary --weight none,none");

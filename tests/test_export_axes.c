@@ -144,8 +144,8 @@ static void a_substitute_has_axes_too(void **state)
 			sum += (double)m.scattered->value[c][e];
 		}
 	}
-	check_rel(number_behind(text, "of what stands here "), difference / sum, 1e-3, "the error that is told");
-	check_between(difference / sum, 1e-3, 0.1, "the error");
+	check_rel(number_behind(text, "weight none: 0, "), difference / sum, 1e-3, "the error that is told");
+	check_between(difference / sum, 1e-3, 0.2, "the error");
 	free(text);
 	measurement_free(&m);
 }
@@ -184,12 +184,16 @@ static void expect_gltf(const char *sigma, double sigma_x, double sigma_y, doubl
 	const double ab = roughness * roughness, at = ab + (1 - ab) * strength * strength;
 	const struct vec3 t = {cos(rotation), sin(rotation), 0}, b = {-sin(rotation), cos(rotation), 0};
 
-	if (ndf_init(&model.ndf, ndf_find("ggx"), sigma_x, sigma_y, 2) || ndf_turn(&model.ndf, angle))
+	/* The lobe is fitted again in glTF's own layers: both roughnesses by one factor, the axes stay. */
+	const double factor = ab / fmin(sigma_x, sigma_y);
+
+	check_between(factor, 0.7, 1.5, "factor of both roughnesses");
+	if (ndf_init(&model.ndf, ndf_find("ggx"), factor * sigma_x, factor * sigma_y, 2) || ndf_turn(&model.ndf, angle))
 		abort();
 	for (int n = 0; n < 100; n++) {
 		const struct vec3 l = any_direction(&seed), v = any_direction(&seed);
 
-		check_rel(khronos_lobe(at, ab, t, b, l, v), cook_torrance_lobe(&model, l, v), 1e-12, sigma);
+		check_rel(khronos_lobe(at, ab, t, b, l, v), cook_torrance_lobe(&model, l, v), 1e-9, sigma);
 	}
 	json_decref(json);
 }
@@ -225,7 +229,7 @@ static void samples_have_their_errors_told(void **state)
 	(void)state;
 	stdfit("synth plain.csv --ndf ggx --sigma 0.3 " LOBE);
 	export_it("plain.csv --ndf ggx --format gltf");
-	check_between(number_behind(last.out, "error of what a glTF viewer shows "), 1e-3, 0.3, "error");
+	check_between(number_behind(last.out, "of what stands here "), 1e-3, 0.3, "error");
 	export_it("plain.csv --ndf ggx --gaf correlated --gray --format pbrt");
 	check_between(number_behind(last.out, "\"rgb reflectance\" [ "), 0.1, 1, "a kd of red");
 }
@@ -287,7 +291,7 @@ static void fitted_axes_are_exported(void **state)
 {
 	(void)state;
 	stdfit("synth fitted.csv --ndf ggx --noise 0.05 " LOBE AXES);
-	stdfit("fit fitted.csv --ndf ggx --anisotropic -q -o fits.csv");
+	stdfit("fit fitted.csv --ndf ggx --anisotropic --weight solid-angle -q -o fits.csv");
 	expect_code(0);
 	export_it("fitted.csv --from fits.csv --format json -o row.json");
 	export_it("fitted.csv --ndf ggx --anisotropic --format json -o fit.json");

@@ -156,8 +156,8 @@ static enum status run(const struct options *options, int *wrong, struct error *
 	if (model_source_kind(options) == SOURCE_FIT)
 		options_say_weight(options);
 	if (source.n > 1)
-		status = error_set(error, STATUS_FORMAT, "%zu rows are meant: choose one with --ndf, --weight or --row",
-				   source.n);
+		status =
+			error_set(error, STATUS_FORMAT, "%zu rows are meant: choose one with --ndf or --row", source.n);
 	else if (source.model[0].path)
 		*wrong = outputs_check(options, &source.model[0].path, 1);
 	if (status == STATUS_OK && *wrong < 0)
