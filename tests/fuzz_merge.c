@@ -22,9 +22,7 @@ static void make_directory(void)
 {
 	if (directory[0])
 		return;
-	snprintf(directory, sizeof directory, "%s/stdfit-fuzz-XXXXXX", access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm");
-	if (!mkdtemp(directory))
-		abort();
+	fuzz_make_directory(directory);
 	snprintf(first_path, sizeof first_path, "%s/a.csv", directory);
 	snprintf(second_path, sizeof second_path, "%s/b.csv", directory);
 	snprintf(merged_path, sizeof merged_path, "%s/c.csv", directory);

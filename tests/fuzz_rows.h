@@ -6,6 +6,16 @@
 #include "fit/results/result.h"
 #include "fuzz.h"
 
+#include <unistd.h>
+
+/* Makes an empty directory, in memory where that is to be had: what is written there may be synced. */
+static inline void fuzz_make_directory(char directory[64])
+{
+	snprintf(directory, 64, "%s/stdfit-fuzz-XXXXXX", access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm");
+	if (!mkdtemp(directory))
+		abort();
+}
+
 static inline void fuzz_write_file(const char *path, const void *bytes, size_t size)
 {
 	FILE *file = fopen(path, "wb");

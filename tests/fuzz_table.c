@@ -22,14 +22,11 @@ static void clean_up(void)
 	rmdir(directory);
 }
 
-/* In memory where that is to be had: resuming syncs what it writes. */
 static void make_directory(void)
 {
 	if (directory[0])
 		return;
-	snprintf(directory, sizeof directory, "%s/stdfit-fuzz-XXXXXX", access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm");
-	if (!mkdtemp(directory))
-		abort();
+	fuzz_make_directory(directory);
 	snprintf(table_path, sizeof table_path, "%s/x.csv", directory);
 	snprintf(back_path, sizeof back_path, "%s/x.csv~", directory);
 	atexit(clean_up);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
 #include "chi_square.h"
+#include "sampled_albedo.h"
 #include "src/energy.h"
 #include "src/vndf.h"
 #include <gsl/gsl_integration.h>
@@ -76,26 +77,6 @@ static void albedo_is_the_mean_of_sampled_weights(void **state)
 	}
 }
 
-/* An albedo from visible normals: the mean of F G / G1(wi), by evenly spread numbers. */
-static double albedo_from(const struct cook_torrance *model, double theta_i, double phi_i, int n)
-{
-	const struct vec3 wi = vec3_from_spherical_deg(theta_i, phi_i);
-	double sum = 0, u = 0.5, v = 0.5;
-	for (int i = 0; i < n; i++) {
-		u += 0.7548776662466927;
-		v += 0.5698402909980532;
-		u -= floor(u);
-		v -= floor(v);
-		const struct vec3 m = vndf_sample(&model->ndf, wi, u, v);
-		const double cos_d = vec3_dot(wi, m);
-		const struct vec3 wo = vec3_sub(vec3_scale(m, 2.0 * cos_d), wi);
-		if (cos_d > 0.0 && wo.z > 0.0)
-			sum += fresnel_F(model->fresnel, cos_d, model->n, model->k) *
-			       gaf_G(model->gaf, &model->ndf, wi, wo) / ndf_G1(&model->ndf, wi);
-	}
-	return sum / n;
-}
-
 static void an_anisotropic_lobe_is_largest_in_an_axis_plane(void **state)
 {
 	static const struct {
@@ -123,12 +104,12 @@ static void an_anisotropic_lobe_is_largest_in_an_axis_plane(void **state)
 		/* At the very horizon there are no samples. */
 		const double there = fmin(theta_i * 180 / M_PI, 89.999);
 		for (int p = 0; p <= 90; p += 45)
-			largest = fmax(largest, albedo_from(&model, there, 25 + p, 10000));
+			largest = fmax(largest, sampled_albedo(&model, there, 25 + p, 10000));
 		check_abs(largest, albedo[1], 3e-3, "in the largest direction");
 		check_abs(albedo[0], 0.1 + 0.5 * albedo[1], 1e-12, "red");
 		for (int t = 0; t < 90; t += 11)
 			for (int p = 0; p <= 90; p += 15)
-				assert_true(albedo_from(&model, t, 25 + p, 2000) < albedo[1] + 3e-3);
+				assert_true(sampled_albedo(&model, t, 25 + p, 2000) < albedo[1] + 3e-3);
 	}
 }
 

@@ -6,8 +6,8 @@
 #include "fit/error/suspects.h"
 #include "fit/search/fit.h"
 #include "make_scattered.h"
+#include "sampled_albedo.h"
 #include "src/energy.h"
-#include "src/vndf.h"
 
 static const double degree = M_PI / 180;
 
@@ -407,26 +407,15 @@ static void spikes_and_clipping_are_found(void **state)
 static double albedo_of_lobe(const struct cook_torrance *model, double theta_i)
 {
 	enum { AZIMUTHS = 8, NORMALS = 4000 };
-	double sum = 0, u = 0.5, v = 0.5;
+	double sum = 0;
 
 	if (model->ndf.sigma_x == model->ndf.sigma_y) {
 		assert_int_equal(energy_lobe(model, cos(theta_i), &sum), STATUS_OK);
 		return sum;
 	}
-	for (int n = 0; n < AZIMUTHS * NORMALS; n++) {
-		const struct vec3 wi = vec3_from_spherical_deg(theta_i * 180 / M_PI, 360.0 * (n % AZIMUTHS) / AZIMUTHS);
-		u += 0.7548776662466927;
-		v += 0.5698402909980532;
-		u -= floor(u);
-		v -= floor(v);
-		const struct vec3 m = vndf_sample(&model->ndf, wi, u, v);
-		const double cos_d = vec3_dot(wi, m);
-		const struct vec3 wo = vec3_sub(vec3_scale(m, 2 * cos_d), wi);
-
-		if (cos_d > 0 && wo.z > 0)
-			sum += fresnel_F(model->fresnel, cos_d, model->n, model->k) * ndf_G1(&model->ndf, wo);
-	}
-	return sum / (AZIMUTHS * NORMALS);
+	for (int n = 0; n < AZIMUTHS; n++)
+		sum += sampled_albedo(model, theta_i * 180 / M_PI, 360.0 * n / AZIMUTHS, NORMALS);
+	return sum / AZIMUTHS;
 }
 
 static void albedos_of_samples_are_the_model_s(void **state)

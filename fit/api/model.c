@@ -63,11 +63,7 @@ enum stdfit_status stdfit_model_evaluate(const struct stdfit_model *model, const
 	enum stdfit_status status = api_model(model, ndf, &inner, error);
 
 	if (status == STDFIT_OK)
-		status = api_directions("wi", n, wi, error);
-	if (status == STDFIT_OK)
-		status = api_directions("wo", n, wo, error);
-	if (status == STDFIT_OK && n > 0 && !f)
-		status = api_fail(error, STATUS_DOMAIN, "f is NULL");
+		status = api_pairs(n, wi, wo, f, "f", error);
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
 		cook_torrance_f(&inner, api_vec(wi + 3 * i), api_vec(wo + 3 * i), f + 3 * i);
 	return status;
@@ -146,12 +142,8 @@ enum stdfit_status stdfit_angles_to_directions(size_t n, const double *angles, d
 enum stdfit_status stdfit_angles_from_directions(size_t n, const double *wi, const double *wo, double *angles,
 						 struct stdfit_error *error)
 {
-	enum stdfit_status status = api_directions("wi", n, wi, error);
+	const enum stdfit_status status = api_pairs(n, wi, wo, angles, "angles", error);
 
-	if (status == STDFIT_OK)
-		status = api_directions("wo", n, wo, error);
-	if (status == STDFIT_OK && n > 0 && !angles)
-		status = api_fail(error, STATUS_DOMAIN, "angles is NULL");
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++) {
 		const struct halfdiff a = halfdiff_from_dirs(api_vec(wi + 3 * i), api_vec(wo + 3 * i));
 

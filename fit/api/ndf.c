@@ -198,11 +198,7 @@ enum stdfit_status stdfit_ndf_G(const stdfit_ndf *ndf, const char *gaf, size_t n
 	if (status == STDFIT_OK)
 		status = api_gaf(gaf, &form, error);
 	if (status == STDFIT_OK)
-		status = api_directions("wi", n, wi, error);
-	if (status == STDFIT_OK)
-		status = api_directions("wo", n, wo, error);
-	if (status == STDFIT_OK && !G && n > 0)
-		status = api_fail(error, STATUS_DOMAIN, "G is NULL");
+		status = api_pairs(n, wi, wo, G, "G", error);
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
 		G[i] = gaf_G(form, inner, api_vec(wi + 3 * i), api_vec(wo + 3 * i));
 	return status;

@@ -59,14 +59,22 @@ enum stdfit_status stdfit_dielectric_evaluate(const stdfit_ndf *ndf, const char 
 	enum stdfit_status status = make_interface(ndf, gaf, index, &dielectric, error);
 
 	if (status == STDFIT_OK)
-		status = api_directions("wi", n, wi, error);
-	if (status == STDFIT_OK)
-		status = api_directions("wo", n, wo, error);
-	if (status == STDFIT_OK && n > 0 && !f)
-		status = api_fail(error, STATUS_DOMAIN, "f is NULL");
+		status = api_pairs(n, wi, wo, f, "f", error);
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
 		f[i] = dielectric_f(&dielectric, api_vec(wi + 3 * i), api_vec(wo + 3 * i));
 	return status;
+}
+
+/* What samples from wi need. */
+static enum stdfit_status make_sampler(const stdfit_ndf *ndf, const char *gaf, double index, const char *sampling,
+				       const double wi[3], struct dielectric *dielectric, enum sampling *normals,
+				       struct stdfit_error *error)
+{
+	enum stdfit_status status = make_interface(ndf, gaf, index, dielectric, error);
+
+	if (status == STDFIT_OK)
+		status = find_sampling(&ndf->ndf, sampling, normals, error);
+	return status == STDFIT_OK ? check_origin(wi, true, error) : status;
 }
 
 enum stdfit_status stdfit_dielectric_sample(const stdfit_ndf *ndf, const char *gaf, double index, const char *sampling,
@@ -75,12 +83,8 @@ enum stdfit_status stdfit_dielectric_sample(const stdfit_ndf *ndf, const char *g
 {
 	struct dielectric dielectric;
 	enum sampling normals = SAMPLING_VISIBLE;
-	enum stdfit_status status = make_interface(ndf, gaf, index, &dielectric, error);
+	enum stdfit_status status = make_sampler(ndf, gaf, index, sampling, wi, &dielectric, &normals, error);
 
-	if (status == STDFIT_OK)
-		status = find_sampling(&ndf->ndf, sampling, &normals, error);
-	if (status == STDFIT_OK)
-		status = check_origin(wi, true, error);
 	if (status == STDFIT_OK && n > 0 && (!wo || !weight))
 		status = api_fail(error, STATUS_DOMAIN, "wo or weight is NULL");
 	if (status == STDFIT_OK)
@@ -99,12 +103,8 @@ enum stdfit_status stdfit_dielectric_pdf(const stdfit_ndf *ndf, double index, co
 {
 	struct dielectric dielectric;
 	enum sampling normals = SAMPLING_VISIBLE;
-	enum stdfit_status status = make_interface(ndf, NULL, index, &dielectric, error);
+	enum stdfit_status status = make_sampler(ndf, NULL, index, sampling, wi, &dielectric, &normals, error);
 
-	if (status == STDFIT_OK)
-		status = find_sampling(&ndf->ndf, sampling, &normals, error);
-	if (status == STDFIT_OK)
-		status = check_origin(wi, true, error);
 	if (status == STDFIT_OK)
 		status = api_directions("wo", n, wo, error);
 	if (status == STDFIT_OK && n > 0 && !pdf)
@@ -170,11 +170,7 @@ enum stdfit_status stdfit_scatter_evaluate(const struct stdfit_facets *facets, c
 		status = api_fail(error, STATUS_DOMAIN, "expected a state of random numbers and events >= 0, found %d",
 				  events);
 	if (status == STDFIT_OK)
-		status = api_directions("wi", n, wi, error);
-	if (status == STDFIT_OK)
-		status = api_directions("wo", n, wo, error);
-	if (status == STDFIT_OK && n > 0 && !f)
-		status = api_fail(error, STATUS_DOMAIN, "f is NULL");
+		status = api_pairs(n, wi, wo, f, "f", error);
 	if (status != STDFIT_OK)
 		return status;
 	const struct random_numbers numbers = {next_number, random};

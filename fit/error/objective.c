@@ -24,11 +24,16 @@ struct term_list term_list_of(const struct fit_options *options)
 	return list;
 }
 
+static bool has_term(const struct objective *o, enum term term)
+{
+	for (int t = 0; t < o->terms.n; t++)
+		if (o->terms.term[t] == term)
+			return true;
+	return false;
+}
+
 static enum status init_tables(struct objective *o, enum masking_density density)
 {
-	const bool second =
-		o->terms.term[o->terms.n - 1] == TERM_SECOND || o->terms.term[o->terms.n - 2] == TERM_SECOND;
-	const bool grazing = o->terms.term[o->terms.n - 1] == TERM_GRAZING;
 	const int32_t q_min = o->table->geometry->q_min;
 	enum status status = STATUS_OK;
 
@@ -40,9 +45,9 @@ static enum status init_tables(struct objective *o, enum masking_density density
 		return status;
 	}
 	status = masking_init(&o->lobe[0].masking, q_min, density);
-	if (status == STATUS_OK && second)
+	if (status == STATUS_OK && has_term(o, TERM_SECOND))
 		status = masking_init(&o->lobe[1].masking, q_min, density);
-	if (status == STATUS_OK && grazing)
+	if (status == STATUS_OK && has_term(o, TERM_GRAZING))
 		status = masking_init(&o->grazing, q_min, density);
 	return status;
 }
@@ -212,16 +217,14 @@ static double grazing_of(double cot, const void *exponent)
 
 static enum status tabulate(struct objective *o, const struct shape *shape)
 {
-	const enum term last = o->terms.term[o->terms.n - 1];
-	const bool grazing = last == TERM_GRAZING;
 	enum status status = tabulate_lobe(o, 0, shape);
 
-	if (status == STATUS_OK && o->terms.term[o->terms.n - 1 - grazing] == TERM_SECOND) {
+	if (status == STATUS_OK && has_term(o, TERM_SECOND)) {
 		const struct shape second = shape_second(shape);
 
 		status = tabulate_lobe(o, 1, &second);
 	}
-	if (grazing && !o->table->scattered && shape->grazing != o->grazing_exponent) {
+	if (has_term(o, TERM_GRAZING) && !o->table->scattered && shape->grazing != o->grazing_exponent) {
 		masking_fill_function(&o->grazing, grazing_of, &shape->grazing, 0);
 		o->grazing_exponent = shape->grazing;
 	}
