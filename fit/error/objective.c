@@ -637,7 +637,7 @@ static void finish(const struct objective *o, const struct bundle problem[], str
 	*linear = (struct linear){.error = 0};
 	for (int c = 0; c < MERL_CHANNELS; c++) {
 		const int slice = c < o->n_slices ? c : 0;
-		const struct bundle *p = &problem[n_problems(o) == 1 ? 0 : c];
+		const struct bundle *p = &problem[is_joint(o) ? 0 : slice];
 
 		for (int t = 0; t < o->terms.n; t++)
 			linear->coefficient[c][t] = p->best[unknown_of(o, slice, t)];
