@@ -1,24 +1,53 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "src/cook_torrance.h"
 
-double cook_torrance_lobe(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo)
+double cook_torrance_F(const struct cook_torrance *model, int c, double cos_d)
 {
+	return model->fresnel == FRESNEL_F82 ? fresnel_f82(cos_d, model->reflectance[c])
+					     : fresnel_F(model->fresnel, cos_d, model->n, model->k);
+}
+
+double cook_torrance_facets(const struct ndf *ndf, enum gaf gaf, struct vec3 wi, struct vec3 wo, double *cos_d)
+{
+	*cos_d = 0.0;
 	if (!(wi.z > 0.0 && wo.z > 0.0))
 		return 0.0;
 	const struct vec3 sum = vec3_add(wi, wo);
 	/* |wi + wo| = 2 cos_d, with no cancellation at grazing angles. */
-	const double cos_d = fmin(0.5 * vec3_length(sum), 1.0);
-	const double F = fresnel_F(model->fresnel, cos_d, model->n, model->k);
-	const double D = ndf_D(&model->ndf, vec3_unit(sum));
-	const double G_over_cosines = gaf_G_over_cosines(model->gaf, &model->ndf, wi, wo);
+	*cos_d = fmin(0.5 * vec3_length(sum), 1.0);
+	const double D = ndf_D(ndf, vec3_unit(sum));
+	const double G_over_cosines = gaf_G_over_cosines(gaf, ndf, wi, wo);
 	/* Where D has underflown the other factor may have overflown. */
-	return D == 0.0 ? 0.0 : 0.25 * F * (D * G_over_cosines);
+	return D == 0.0 ? 0.0 : 0.25 * (D * G_over_cosines);
+}
+
+double cook_torrance_grazing(double exponent, double cos_i, double cos_o, double cos_d)
+{
+	return cos_d * cos_d * (pow(1.0 - cos_i, exponent) + pow(1.0 - cos_o, exponent)) * M_1_PI;
+}
+
+double cook_torrance_lobe(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo)
+{
+	double cos_d;
+	const double facets = cook_torrance_facets(&model->ndf, model->gaf, wi, wo, &cos_d);
+	return facets == 0.0 ? 0.0 : fresnel_F(model->fresnel, cos_d, model->n, model->k) * facets;
 }
 
 void cook_torrance_f(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo, double f[3])
 {
-	const double lobe = cook_torrance_lobe(model, wi, wo);
+	double cos_d, unused;
 	const bool above = wi.z > 0.0 && wo.z > 0.0;
-	for (int c = 0; c < 3; c++)
-		f[c] = above ? model->kd[c] * M_1_PI + model->ks[c] * lobe : 0.0;
+	const double facets = cook_torrance_facets(&model->ndf, model->gaf, wi, wo, &cos_d);
+	const double second = cook_torrance_has_second(model)
+				      ? cook_torrance_facets(&model->second, model->gaf, wi, wo, &unused)
+				      : 0.0;
+	const double grazing = above && cook_torrance_has_grazing(model)
+				       ? cook_torrance_grazing(model->grazing, wi.z, wo.z, cos_d)
+				       : 0.0;
+	for (int c = 0; c < 3; c++) {
+		const double facets_c = model->ks[c] * facets + model->ks_second[c] * second;
+		f[c] = above ? model->kd[c] * M_1_PI + model->kg[c] * grazing : 0.0;
+		if (facets_c != 0.0)
+			f[c] += cook_torrance_F(model, c, cos_d) * facets_c;
+	}
 }

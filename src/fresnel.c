@@ -85,6 +85,25 @@ double fresnel_conductor(double cos_d, double eta, double k)
 	return mean_of_squares(front / s_sum / s_sum, front / p_sum * (cabs(m2 * (c * c) - s2) / p_sum));
 }
 
+void fresnel_f82_parts(double cos_d, double part[F82_PARTS])
+{
+	const double c_82 = 1.0 / 7.0, x_82 = 1.0 - c_82;
+	const double five_82 = (x_82 * x_82) * (x_82 * x_82) * x_82, peak = c_82 * five_82 * x_82;
+	const double c = isnan(cos_d) ? NAN : fmin(fmax(cos_d, 0.0), 1.0), x = 1.0 - c;
+	const double five = (x * x) * (x * x) * x, bump = c * five * x / peak;
+	part[0] = (1.0 - five) - (1.0 - five_82) * bump;
+	part[1] = bump;
+	part[2] = five - five_82 * bump;
+}
+
+double fresnel_f82(double cos_d, const double reflectance[F82_PARTS])
+{
+	double part[F82_PARTS];
+	fresnel_f82_parts(cos_d, part);
+	const double F = reflectance[0] * part[0] + reflectance[1] * part[1] + reflectance[2] * part[2];
+	return isnan(F) ? NAN : fmin(fmax(F, 0.0), 1.0);
+}
+
 double fresnel_F(enum fresnel fresnel, double cos_d, double n, double k)
 {
 	switch (fresnel) {
@@ -95,7 +114,7 @@ double fresnel_F(enum fresnel fresnel, double cos_d, double n, double k)
 	case FRESNEL_CONDUCTOR:
 		return fresnel_conductor(cos_d, n, k);
 	case FRESNEL_NONE:
-	case FRESNEL_COUNT:
+	case FRESNEL_F82:
 		break;
 	}
 	return 1.0;

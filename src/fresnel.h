@@ -12,7 +12,9 @@ enum fresnel {
 	FRESNEL_SCHLICK,    /* F0 + (1 - F0)(1 - cos_d)^5 with F0 = ((n-1)/(n+1))^2 */
 	FRESNEL_CONDUCTOR,  /* exact, complex index n + i k */
 	FRESNEL_NONE,       /* 1 */
-	FRESNEL_COUNT
+	FRESNEL_COUNT,      /* of those that have a name */
+	FRESNEL_F82 =
+		FRESNEL_COUNT /* three reflectances, see fresnel_f82(): not a function of n and k. A model may have it, no fit yet */
 };
 
 /* fresnel_name - "dielectric", "schlick", "conductor", "none"; "unknown" for any other value. */
@@ -35,7 +37,19 @@ double fresnel_schlick(double cos_d, double n);
  */
 double fresnel_conductor(double cos_d, double eta, double k);
 
-/* fresnel_F - the chosen form; k is read by the conductor only, n by all but FRESNEL_NONE. */
+/* fresnel_f82 - Schlick's form with the reflectances F0 at the normal, F82 at cos_d = 1/7 and F90 at grazing incidence
+ * [Hoffman 2019, "Fresnel equations considered harmful"; as generalized_schlick in MaterialX and the metal of OpenPBR]:
+ *
+ *     F = F0 + (F90 - F0) (1 - c)^5 + a c (1 - c)^6,        a such that F is F82 at c = 1/7
+ *
+ * It is linear in the three: F = sum of reflectance[i] part[i], parts in the order F0, F82, F90. The sum is moved into [0, 1],
+ * beyond which reflectances in [0, 1] may lead by a few thousandths. */
+enum { F82_PARTS = 3 };
+void fresnel_f82_parts(double cos_d, double part[F82_PARTS]);
+double fresnel_f82(double cos_d, const double reflectance[F82_PARTS]);
+
+/* fresnel_F - the chosen form; k is read by the conductor only, n by all but FRESNEL_NONE. 1 for FRESNEL_F82, whose
+ * reflectances a caller has to know. */
 double fresnel_F(enum fresnel fresnel, double cos_d, double n, double k);
 
 #endif

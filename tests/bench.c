@@ -79,20 +79,21 @@ static float stream_all(const struct sample_set *t, const float *s, bool geometr
 static double pass_all(const struct objective *o, const struct kernel_g1 *g1, bool model, double tau, int threads)
 {
 	const struct sample_set *t = o->table;
-	const struct kernel_evaluation evaluation = {0.1, 0.4, tau, 1e-3};
+	const struct kernel_evaluation evaluation = {{0.1, 0.4}, tau, 1e-3};
 	double sum = 0;
 
 #pragma omp parallel for num_threads(threads) schedule(static) reduction(+ : sum)
 	for (int b = 0; b < t->n_blocks; b++) {
 		const size_t at = (size_t)b * KERNEL_BLOCK;
 		const struct kernel_samples slots = sample_set_block(t, b);
+		const float *const term[] = {t->w + at, o->term[1] + at};
 		struct kernel_sums sums;
 
 		if (model)
-			o->kernel->lobe(KERNEL_SEPARABLE, g1, o->row, &slots, o->s + at);
+			o->kernel->lobe(KERNEL_SEPARABLE, g1, o->row[1], &slots, o->term[1] + at);
 		for (int c = 0; c < MERL_CHANNELS; c++) {
-			o->kernel->pass(b < t->n_pair_blocks ? 2 : 1, sample_set_value(t, b, c), t->w + at, o->s + at,
-					&evaluation, &sums);
+			o->kernel->pass(2, b < t->n_pair_blocks ? 2 : 1, sample_set_value(t, b, c), term, &evaluation,
+					&sums);
 			sum += sums.error;
 		}
 	}
@@ -112,7 +113,7 @@ static void bench_kernel(const struct sample_set *table, const struct fit_option
 	if (objective_init(&o, table, options, ndf_find(ndf), 1, MASKING_COARSE) != STATUS_OK ||
 	    objective_lobe(&o, &shape) != STATUS_OK)
 		return;
-	const struct kernel_g1 g1 = masking_kernel(&o.masking);
+	const struct kernel_g1 g1 = masking_kernel(&o.lobe[0].masking);
 
 	for (int r = 0; r < REPEATS; r++) {
 		double t = search_clock();

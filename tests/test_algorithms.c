@@ -95,7 +95,7 @@ static void check_found(const struct found *f, const struct trace *trace, double
 	check_between(f->shape.ior, FIT_IOR_MIN, FIT_IOR_MAX, label);
 	for (int c = 0; c < 3; c++) {
 		check_between(f->linear.kd[c], 0, largest_factor, label);
-		check_between(f->linear.ks[c], 0, largest_factor, label);
+		check_between(f->linear.coefficient[c][1], 0, largest_factor, label);
 	}
 	check_between(f->starts_agreeing, 1, f->starts, label);
 	check_between((double)f->evaluations, (double)trace->point[trace->n - 1].evaluations, 1e9, label);
@@ -198,13 +198,15 @@ static void each_takes_any_number_of_parameters(void **state)
 				check_abs(found.shape.sigma, 0.15, 0, name);
 			if (variant < 2) {
 				check_abs(found.linear.kd[0] + found.linear.kd[1] + found.linear.kd[2], 0, 0, name);
-				check_abs(found.linear.ks[2], found.linear.ks[0], 0, name);
+				check_abs(found.linear.coefficient[2][1], found.linear.coefficient[0][1], 0, name);
 			}
 			if (variant == 3)
-				check_abs(found.linear.ks[0] + found.linear.ks[1] + found.linear.ks[2], 0, 0, name);
+				check_abs(found.linear.coefficient[0][1] + found.linear.coefficient[1][1] +
+						  found.linear.coefficient[2][1],
+					  0, 0, name);
 			for (int c = 0; c < 3 && variant == 4; c++) {
 				check_between(found.linear.kd[c], 0, 0.875, name);
-				check_between(found.linear.ks[c], 0, 0.125, name);
+				check_between(found.linear.coefficient[c][1], 0, 0.125, name);
 			}
 			trace_free(&trace);
 		}
@@ -247,17 +249,18 @@ static void each_stops_when_cancelled(void **state)
 static void the_error_of_a_point(void **state)
 {
 	const struct fit_options o = options_for(NULL, NULL);
-	const struct shape shape = {0.2, 1.8, 1.5, 0, 0, 0}, nonsense = {-1, 1.8, 1.5, 0, 0, 0};
-	const double none[3] = {0, 0, 0};
+	const struct shape shape = {.sigma = 0.2, .gamma = 1.8, .ior = 1.5},
+			   nonsense = {.sigma = -1, .gamma = 1.8, .ior = 1.5};
+	const struct linear none = {.error = 0};
 	struct objective objective;
 	struct linear linear;
 
 	(void)state;
 	assert_int_equal(objective_init(&objective, &table, &o, o.ndf[0], 1, MASKING_FINE), STATUS_OK);
 	objective_eval(&objective, &shape, 1e-7, true, &linear);
-	check_rel(objective_error(&objective, &shape, linear.kd, linear.ks), linear.error, 1e-7, "at the optimum");
-	check_rel(objective_error(&objective, &shape, none, none), 1, 1e-6, "black");
-	check_abs(objective_error(&objective, &nonsense, none, none), OBJECTIVE_NO_FIT, 0, "outside the domain");
+	check_rel(objective_error(&objective, &shape, &linear), linear.error, 1e-7, "at the optimum");
+	check_rel(objective_error(&objective, &shape, &none), 1, 1e-6, "black");
+	check_abs(objective_error(&objective, &nonsense, &none), OBJECTIVE_NO_FIT, 0, "outside the domain");
 	objective_free(&objective);
 }
 
@@ -266,13 +269,17 @@ static void the_error_of_a_point(void **state)
 static void a_jump_to_another_lobe_ends_at_its_minimum(void **state)
 {
 	static const struct shape shapes[] = {
-		{2e-3, 1.9, 90, 0, 0, 0},       {0.3, 2.5, 1.2, 0, 0, 0},       {0.087, 9.5, 3.2, 0, 0, 0},
-		{0.01, 1.6, 30, 0, 0, 0},       {0.16, 2.2, 3.1, 0, 0, 0},      {1.5, 1.55, 1.05, 0, 0, 0},
-		{4e-3, 50, 60, 0, 0, 0},        {0.52, 1.6, 6.5, 0, 0, 0},      {0.12, 1.9, 1.6, 0, 0, 0},
-		{0.0849, 41, 1.101, 0, 0, 0},   {1.74e-4, 803, 100, 0, 0, 0},   {0.0396, 1.61, 1.002, 0, 0, 0},
-		{1.42e-4, 141, 13, 0, 0, 0},    {0.0258, 154, 1.007, 0, 0, 0},  {1.15e-4, 154, 43.7, 0, 0, 0},
-		{0.526, 17.6, 1.304, 0, 0, 0},  {1.05e-4, 910, 71.24, 0, 0, 0}, {0.0164, 1.5001, 1.012, 0, 0, 0},
-		{1.19e-4, 405, 12.67, 0, 0, 0}, {0.42, 1.5003, 1.002, 0, 0, 0}, {1.48e-4, 5.87, 70.55, 0, 0, 0}};
+		{.sigma = 2e-3, .gamma = 1.9, .ior = 90},       {.sigma = 0.3, .gamma = 2.5, .ior = 1.2},
+		{.sigma = 0.087, .gamma = 9.5, .ior = 3.2},     {.sigma = 0.01, .gamma = 1.6, .ior = 30},
+		{.sigma = 0.16, .gamma = 2.2, .ior = 3.1},      {.sigma = 1.5, .gamma = 1.55, .ior = 1.05},
+		{.sigma = 4e-3, .gamma = 50, .ior = 60},        {.sigma = 0.52, .gamma = 1.6, .ior = 6.5},
+		{.sigma = 0.12, .gamma = 1.9, .ior = 1.6},      {.sigma = 0.0849, .gamma = 41, .ior = 1.101},
+		{.sigma = 1.74e-4, .gamma = 803, .ior = 100},   {.sigma = 0.0396, .gamma = 1.61, .ior = 1.002},
+		{.sigma = 1.42e-4, .gamma = 141, .ior = 13},    {.sigma = 0.0258, .gamma = 154, .ior = 1.007},
+		{.sigma = 1.15e-4, .gamma = 154, .ior = 43.7},  {.sigma = 0.526, .gamma = 17.6, .ior = 1.304},
+		{.sigma = 1.05e-4, .gamma = 910, .ior = 71.24}, {.sigma = 0.0164, .gamma = 1.5001, .ior = 1.012},
+		{.sigma = 1.19e-4, .gamma = 405, .ior = 12.67}, {.sigma = 0.42, .gamma = 1.5003, .ior = 1.002},
+		{.sigma = 1.48e-4, .gamma = 5.87, .ior = 70.55}};
 	const struct fit_options o = options_for(NULL, NULL);
 	struct objective jumping, fresh;
 	struct linear found, wanted;

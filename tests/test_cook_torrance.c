@@ -12,6 +12,7 @@ static struct cook_torrance model_make(const char *name, double sigma, double ga
 		.k = 2.1,
 		.kd = {0.11, 0.23, 0.37},
 		.ks = {0.83, 0.41, 0.29},
+		.reflectance = {{0.9, 0.8, 1.0}, {0.5, 0.55, 0.9}, {0.04, 0.3, 1.0}},
 	};
 	assert_int_equal(ndf_init(&model.ndf, ndf_find(name), sigma, sigma, gamma), STATUS_OK);
 	return model;
@@ -29,7 +30,7 @@ static void for_all(void (*check)(const struct cook_torrance *model, struct vec3
 			struct cook_torrance model = model_make(ndf_name(ndf_at(d)), sigma, 2.7);
 			for (int i = 0; i < 7 * 7 * 4; i++) {
 				model.gaf = (enum gaf)(i % GAF_COUNT);
-				model.fresnel = (enum fresnel)(i % FRESNEL_COUNT);
+				model.fresnel = (enum fresnel)(i % (FRESNEL_F82 + 1));
 				check(&model, vec3_from_spherical_deg(thetas[i % 7], 11.0),
 				      vec3_from_spherical_deg(thetas[i / 7 % 7], 11.0 + phis[i / 49]));
 			}
@@ -58,8 +59,41 @@ static void check_product(const struct cook_torrance *model, struct vec3 wi, str
 	double f[3];
 	cook_torrance_f(model, wi, wo, f);
 	for (int c = 0; c < 3; c++) {
-		const double sum_c = model->kd[c] / M_PI + model->ks[c] * cook_torrance_lobe(model, wi, wo);
-		check_rel(f[c], sum_c, 1e-15, "sum of Lambert and lobe");
+		const bool f82 = model->fresnel == FRESNEL_F82;
+		const double F_c = f82 ? fresnel_f82(cos(a.theta_d), model->reflectance[c]) : 1.0;
+		const double sum_c = model->kd[c] / M_PI + model->ks[c] * F_c * cook_torrance_lobe(model, wi, wo);
+		check_rel(f[c], sum_c, f82 ? 1e-13 : 1e-15, "sum of Lambert and lobe");
+	}
+}
+
+/* The terms of richer models add up. */
+static void a_second_lobe_and_a_grazing_term_add(void **state)
+{
+	(void)state;
+	const struct vec3 wi = vec3_from_spherical_deg(70.0, 20.0), wo = vec3_from_spherical_deg(50.0, 190.0);
+	const struct cook_torrance model = model_make("std", 0.2, 2.7);
+	struct cook_torrance second = model_make("std", 0.05, 4.0), rich = model;
+	double f_model[3], f_second[3], f_rich[3];
+	rich.second = second.ndf;
+	rich.grazing = 3.0;
+	for (int c = 0; c < 3; c++) {
+		second.kd[c] = 0.0;
+		rich.ks_second[c] = second.ks[c] = 0.1 * (c + 1);
+		rich.kg[c] = 0.3 * (c + 1);
+	}
+	second.gaf = model.gaf;
+	second.fresnel = model.fresnel;
+	second.n = model.n;
+	second.k = model.k;
+	cook_torrance_f(&model, wi, wo, f_model);
+	cook_torrance_f(&second, wi, wo, f_second);
+	cook_torrance_f(&rich, wi, wo, f_rich);
+	/* cos theta_d by the angle between the two. */
+	const double cos_d = cos(0.5 * acos(vec3_dot(wi, wo)));
+	const double grazing = cos_d * cos_d / M_PI * (pow(1.0 - wi.z, 3.0) + pow(1.0 - wo.z, 3.0));
+	for (int c = 0; c < 3; c++) {
+		assert_true(f_second[c] > 0.0);
+		check_rel(f_rich[c], f_model[c] + f_second[c] + rich.kg[c] * grazing, 1e-14, "sum of four terms");
 	}
 }
 
@@ -211,6 +245,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(lobe_is_the_product_of_its_parts),
+		cmocka_unit_test(a_second_lobe_and_a_grazing_term_add),
 		cmocka_unit_test(lobe_is_reciprocal),
 		cmocka_unit_test(lobe_matches_values_by_hand),
 		cmocka_unit_test(lobe_is_zero_below_the_horizon),

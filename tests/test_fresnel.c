@@ -99,6 +99,24 @@ static void F_is_the_form_it_is_asked_for(void **state)
 	check_rel(fresnel_schlick(0.5, 3.0), 0.25 + 0.75 / 32.0, 1e-15, "Schlick by hand");
 }
 
+/* The three reflectances are those at their angles; with Schlick's own at 1/7 it is Schlick's; what leads out of [0, 1] is cut. */
+static void f82_has_its_three_reflectances(void **state)
+{
+	(void)state;
+	const double gold[F82_PARTS] = {0.91, 0.8, 1.0}, excessive[F82_PARTS] = {0.0, 0.0, 1.0};
+	check_rel(fresnel_f82(1.0, gold), 0.91, 1e-15, "F0");
+	check_rel(fresnel_f82(1.0 / 7.0, gold), 0.8, 1e-14, "F82");
+	check_rel(fresnel_f82(0.0, gold), 1.0, 1e-15, "F90");
+	for (double n = 1.1; n < 100.0; n *= 1.7) {
+		const double schlick[F82_PARTS] = {fresnel_schlick(1.0, n), fresnel_schlick(1.0 / 7.0, n), 1.0};
+		for (double c = 0.0; c <= 1.0; c += 1.0 / 64.0)
+			check_rel(fresnel_f82(c, schlick), fresnel_schlick(c, n), 1e-13, "Schlick's own");
+	}
+	for (double c = -0.1; c <= 1.1; c += 1.0 / 128.0)
+		check_between(fresnel_f82(c, excessive), 0.0, 1.0, "in range");
+	assert_true(isnan(fresnel_f82(NAN, gold)));
+}
+
 static void names_and_values_are_inverse(void **state)
 {
 	(void)state;
@@ -127,6 +145,7 @@ int main(void)
 		cmocka_unit_test(F_at_the_Brewster_angle_is_half_of_r_s_squared),
 		cmocka_unit_test(stays_in_range),
 		cmocka_unit_test(F_is_the_form_it_is_asked_for),
+		cmocka_unit_test(f82_has_its_three_reflectances),
 		cmocka_unit_test(names_and_values_are_inverse),
 	};
 	return cmocka_run_group_tests_name("fresnel", tests, NULL, NULL);

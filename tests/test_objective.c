@@ -95,7 +95,7 @@ static double kernel_error(const struct kernel *kernel, const struct geometry *g
 			   const struct measurement *measurement, const struct cook_torrance *model,
 			   const struct fit_options *o, enum masking_density density)
 {
-	const struct shape shape = {model->ndf.sigma_x, model->ndf.gamma, model->n, 0, 0, 0};
+	const struct shape shape = {.sigma = model->ndf.sigma_x, .gamma = model->ndf.gamma, .ior = model->n};
 	struct objective objective;
 	struct sample_set table;
 	double error = 0, sum = 0;
@@ -107,11 +107,12 @@ static double kernel_error(const struct kernel *kernel, const struct geometry *g
 	for (int c = 0; c < 3; c++) {
 		for (int b = 0; b < table.n_blocks; b++) {
 			const size_t at = (size_t)b * KERNEL_BLOCK;
-			const struct kernel_evaluation look = {model->kd[c] / M_PI, model->ks[c], 0.05, 1e-3};
+			const struct kernel_evaluation look = {{model->kd[c] / M_PI, model->ks[c]}, 0.05, 1e-3};
+			const float *const term[] = {table.w + at, objective.term[1] + at};
 			struct kernel_sums sums;
 
-			kernel->pass(b < table.n_pair_blocks ? 2 : 1, sample_set_value(&table, b, c), table.w + at,
-				     objective.s + at, &look, &sums);
+			kernel->pass(2, b < table.n_pair_blocks ? 2 : 1, sample_set_value(&table, b, c), term, &look,
+				     &sums);
 			error += sums.error;
 		}
 		sum += table.sum[c];
@@ -219,7 +220,9 @@ static void thinned_tables_estimate_the_error(void **state)
 {
 	const struct fit_options o = options_with(GAF_UNCORRELATED, WEIGHT_NONE, BINS_NODE, 90);
 	const struct cook_torrance truth = make_model("std", 0.05, 1.7, 1.6);
-	const struct shape shapes[] = {{0.05, 2, 1.6, 0, 0, 0}, {0.2, 2, 1.2, 0, 0, 0}, {0.01, 2, 20, 0, 0, 0}};
+	const struct shape shapes[] = {{.sigma = 0.05, .gamma = 2, .ior = 1.6},
+				       {.sigma = 0.2, .gamma = 2, .ior = 1.2},
+				       {.sigma = 0.01, .gamma = 2, .ior = 20}};
 	struct measurement measurement = make_table(&truth, 180, BINS_NODE, 0.3);
 	struct geometry geometry;
 	struct sample_set full, thin;
@@ -246,6 +249,80 @@ static void thinned_tables_estimate_the_error(void **state)
 	sample_set_free(&thin);
 	geometry_free(&geometry);
 	measurement_free(&measurement);
+}
+
+/* The coefficients of a model's own table, of all terms that the options have, at its own shape. */
+static void check_solved(const struct cook_torrance *truth, const struct fit_options *o, const char *label)
+{
+	const struct shape shape = shape_of(truth);
+	struct measurement measurement = make_sparse_table(truth, 180, BINS_NODE, 0, 6);
+	struct cook_torrance found = *truth;
+	struct geometry geometry;
+	struct sample_set full;
+	struct objective objective;
+	struct linear linear;
+
+	assert_int_equal(geometry_init(&geometry, 180, o), STATUS_OK);
+	assert_int_equal(sample_set_init(&full, &geometry, &measurement, 2), STATUS_OK);
+	assert_int_equal(objective_init(&objective, &full, o, truth->ndf.class, 1, MASKING_FINE), STATUS_OK);
+	check_between(objective_eval(&objective, &shape, 1e-7, true, &linear), 0, 1e-6, label);
+	assert_true(linear.lower_bound <= linear.error);
+	linear_set_model(&linear, o, &found);
+	for (int c = 0; c < 3; c++) {
+		check_abs(found.kd[c], truth->kd[c], 1e-4, label);
+		check_abs(found.ks[c], truth->ks[c], 1e-4, label);
+		check_abs(found.kg[c], truth->kg[c], 1e-4, label);
+		check_abs(found.ks_second[c], truth->ks_second[c], 1e-4, label);
+		for (int i = 0; i < F82_PARTS && truth->fresnel == FRESNEL_F82; i++)
+			check_abs(found.reflectance[c][i], truth->reflectance[c][i], 1e-3, label);
+	}
+	objective_free(&objective);
+	sample_set_free(&full);
+	geometry_free(&geometry);
+	measurement_free(&measurement);
+}
+
+static void the_coefficients_of_every_term_come_back(void **state)
+{
+	const struct cook_torrance plain = make_model("std", 0.2, 2.5, 1.6);
+	struct fit_options o = options_with(GAF_UNCORRELATED, WEIGHT_SOLID_ANGLE, BINS_NODE, 90);
+	struct cook_torrance truth = plain;
+
+	(void)state;
+	for (int c = 0; c < 3; c++)
+		truth.ks[c] = 0.6;
+	o.gray_specular = true;
+	check_solved(&truth, &o, "a coloured kd beside one ks");
+
+	truth = plain;
+	o.gray_specular = false;
+	o.lobes = 2;
+	o.grazing = true;
+	truth.grazing = 3;
+	assert_int_equal(ndf_init(&truth.second, truth.ndf.class, 0.04, 0.04, 1.8), STATUS_OK);
+	for (int c = 0; c < 3; c++) {
+		truth.kg[c] = 0.1 * (c + 1);
+		truth.ks_second[c] = 0.3 / (c + 1);
+	}
+	check_solved(&truth, &o, "two lobes and a grazing term");
+
+	truth = plain;
+	o.lobes = 1;
+	o.grazing = false;
+	o.fresnel = truth.fresnel = FRESNEL_F82;
+	for (int c = 0; c < 3; c++) {
+		truth.ks[c] = 1;
+		truth.reflectance[c][0] = 0.9 - 0.2 * c;
+		truth.reflectance[c][1] = 0.8 - 0.1 * c;
+		truth.reflectance[c][2] = 0.95;
+	}
+	check_solved(&truth, &o, "f82");
+	o.grazing = true;
+	truth.grazing = 5;
+	check_solved(&truth, &o, "f82 and a grazing term that is not there");
+	/* More than there are places for. */
+	o.lobes = 2;
+	assert_int_equal(term_list_of(&o).n, 0);
 }
 
 /* Of the table in this unit: E, kd and ks of a shape; how many values of the sample set are no normal floats. */
@@ -323,6 +400,7 @@ int main(void)
 		cmocka_unit_test(kernel_and_metrics_match_the_reference),
 		cmocka_unit_test(entries_above_the_horizon),
 		cmocka_unit_test(thinned_tables_estimate_the_error),
+		cmocka_unit_test(the_coefficients_of_every_term_come_back),
 		cmocka_unit_test(faint_tables_are_fitted_in_a_unit_of_their_own),
 		cmocka_unit_test(nothing_to_fit_is_said),
 	};

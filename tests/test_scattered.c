@@ -69,13 +69,18 @@ static double kernel_error(const struct kernel *kernel, const struct sample_set 
 			   const struct fit_options *o, enum masking_density density, bool exact)
 {
 	const struct shape shape = shape_of(model);
+	struct linear linear = {.error = 0};
 	struct objective objective;
 
 	assert_int_equal(objective_init(&objective, set, o, model->ndf.class, 1, density), STATUS_OK);
 	objective.kernel = kernel;
 	assert_true(objective.is_exact == (density == MASKING_FINE));
 	objective.is_exact = exact;
-	const double error = objective_error(&objective, &shape, model->kd, model->ks);
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		linear.coefficient[c][0] = model->kd[c] / M_PI;
+		linear.coefficient[c][1] = model->ks[c];
+	}
+	const double error = objective_error(&objective, &shape, &linear);
 
 	objective_free(&objective);
 	return error;

@@ -228,8 +228,8 @@ static void E_is_right_over_the_range_of_floats(void **state)
 		assert_int_equal(objective_lobe(&o, &(struct shape){.sigma = 1e-40, .gamma = 3.0, .ior = 1.5}),
 				 STATUS_OK);
 		for (int n = 0; n < table.n_blocks * KERNEL_BLOCK; n++)
-			if (!(o.s[n] >= 0.0f && o.s[n] <= FLT_MAX))
-				fail_msg("lobe of slot %d is %g", n, (double)o.s[n]);
+			if (!(o.term[1][n] >= 0.0f && o.term[1][n] <= FLT_MAX))
+				fail_msg("lobe of slot %d is %g", n, (double)o.term[1][n]);
 		objective_free(&o);
 		sample_set_free(&table);
 	}

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/error/kernel.h"
 #include <math.h>
+#include <stddef.h>
 
 /* Compiled twice, see the Makefile: KERNEL_NAME is kernel_plain or kernel_avx2. */
 #ifndef KERNEL_NAME
@@ -23,21 +24,9 @@ static inline float g1_at(const struct kernel_g1 *g1, const float *restrict valu
 
 /* The specular term as cook_torrance_from_G1() puts it together, in float and from tables;
  * kernel_and_metrics_match_the_reference in tests/test_objective.c holds both against cook_torrance_f(). */
-static void lobe_separable(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_samples *samples,
-			   float *restrict s)
-{
-	const struct kernel_g1 table = *g1;
-	const float *restrict value = g1->value, *restrict geometric_factor = samples->geometric_factor;
-	const int32_t *restrict q_i = samples->q_i, *restrict q_o = samples->q_o;
-	const uint16_t *restrict at = samples->row;
-
-#pragma omp simd
-	for (int n = 0; n < KERNEL_BLOCK; n++)
-		s[n] = geometric_factor[n] * row[at[n]] * g1_at(&table, value, q_i[n]) * g1_at(&table, value, q_o[n]);
-}
-
-static void lobe_correlated(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_samples *samples,
-			    float *restrict s)
+__attribute__((always_inline)) static inline void tabulated(enum kernel_gaf gaf, const struct kernel_g1 *g1,
+							    const float *restrict row,
+							    const struct kernel_samples *samples, float *restrict s)
 {
 	const struct kernel_g1 table = *g1;
 	const float *restrict value = g1->value, *restrict geometric_factor = samples->geometric_factor;
@@ -46,36 +35,38 @@ static void lobe_correlated(const struct kernel_g1 *g1, const float *restrict ro
 
 #pragma omp simd
 	for (int n = 0; n < KERNEL_BLOCK; n++) {
-		const float i = g1_at(&table, value, q_i[n]), o = g1_at(&table, value, q_o[n]);
-		/* 1/(1/i + 1/o - 1), without the division by a G1 that may be 0. */
-		const float below = i + o - i * o;
+		float f = geometric_factor[n] * row[at[n]];
 
-		s[n] = geometric_factor[n] * row[at[n]] * (below > 0 ? i * o / below : 0);
+		if (gaf != KERNEL_STATIC) {
+			const float i = g1_at(&table, value, q_i[n]), o = g1_at(&table, value, q_o[n]);
+			/* 1/(1/i + 1/o - 1), without the division by a G1 that may be 0. */
+			const float below = i + o - i * o;
+
+			if (gaf == KERNEL_SEPARABLE)
+				f = f * i * o;
+			else
+				f *= gaf == KERNEL_SUM ? i + o : below > 0 ? i * o / below : 0;
+		}
+		s[n] = f;
 	}
 }
 
-static void lobe_static(const float *restrict row, const struct kernel_samples *samples, float *restrict s)
-{
-	const float *restrict geometric_factor = samples->geometric_factor;
-	const uint16_t *restrict at = samples->row;
-
-#pragma omp simd
-	for (int n = 0; n < KERNEL_BLOCK; n++)
-		s[n] = geometric_factor[n] * row[at[n]];
-}
-
+/* Each form of G gets a loop of its own. */
 static void lobe(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *row,
 		 const struct kernel_samples *samples, float *s)
 {
 	switch (gaf) {
 	case KERNEL_SEPARABLE:
-		lobe_separable(g1, row, samples, s);
+		tabulated(KERNEL_SEPARABLE, g1, row, samples, s);
 		break;
 	case KERNEL_CORRELATED:
-		lobe_correlated(g1, row, samples, s);
+		tabulated(KERNEL_CORRELATED, g1, row, samples, s);
+		break;
+	case KERNEL_SUM:
+		tabulated(KERNEL_SUM, g1, row, samples, s);
 		break;
 	case KERNEL_STATIC:
-		lobe_static(row, samples, s);
+		tabulated(KERNEL_STATIC, g1, row, samples, s);
 		break;
 	}
 }
@@ -123,7 +114,7 @@ __attribute__((always_inline)) static inline void scattered(enum kernel_gaf gaf,
 				    o = curve_at(&of.G1, G1, form_at(&of.masking, o_x[n], o_y[n])),
 				    below = i + o - i * o;
 
-			/* As in lobe_correlated(). */
+			/* As in tabulated(). */
 			G = gaf == KERNEL_SEPARABLE ? i * o : below > 0 ? i * o / below : 0;
 		}
 		const float P = of.scale * curve_at(&of.P22, P22, form_at(&of.slopes, h_x[n], h_y[n]));
@@ -143,6 +134,7 @@ static void lobe_scattered(enum kernel_gaf gaf, const struct kernel_shape *shape
 	case KERNEL_CORRELATED:
 		scattered(KERNEL_CORRELATED, shape, samples, s);
 		break;
+	case KERNEL_SUM: /* has no table of scattered entries */
 	case KERNEL_STATIC:
 		scattered(KERNEL_STATIC, shape, samples, s);
 		break;
@@ -157,11 +149,11 @@ typedef double lanes_double __attribute__((vector_size(64)));
 enum { LANES = 8 };
 
 struct lane_evaluation {
-	lanes d, ks, tau, floor;
+	lanes x[KERNEL_TERMS], tau, floor;
 };
 
 struct accumulator {
-	lanes error, slope_w, slope_s, dd, ds, ss;
+	lanes error, slope[KERNEL_TERMS], curvature[KERNEL_SECOND];
 };
 
 /* 1/x to about 1 %, x > 0: the curvature is an estimate, and a division takes longer than all the rest. */
@@ -172,18 +164,25 @@ __attribute__((always_inline)) static inline lanes rough_inverse(lanes x)
 	return y * (2 - x * y);
 }
 
-/* Adds the members m[0], m[KERNEL_BLOCK], ... of eight samples. Constant arguments are folded in. */
-__attribute__((always_inline)) static inline void add_lanes(int members, bool curved, const float *m, const float *w_at,
-							    const float *s_at, const struct lane_evaluation *at,
-							    struct accumulator *sum)
+/* Adds the members m[0], m[KERNEL_BLOCK], ... of eight samples, those from `from` on in each term. Constant arguments are folded in. */
+__attribute__((always_inline)) static inline void add_lanes(int terms, int members, bool curved, const float *m,
+							    const float *const term[], int from,
+							    const struct lane_evaluation *at, struct accumulator *sum)
 {
-	const lanes w = *(const lanes *)w_at, s = *(const lanes *)s_at, f = at->d * w + at->ks * s;
-	const lanes wide = f + at->floor * w, window = at->tau * wide;
+	lanes a[KERNEL_TERMS], f;
+
+	a[0] = *(const lanes *)(term[0] + from);
+	f = at->x[0] * a[0];
+	for (int t = 1; t < terms; t++) {
+		a[t] = *(const lanes *)(term[t] + from);
+		f += at->x[t] * a[t];
+	}
+	const lanes wide = f + at->floor * a[0], window = at->tau * wide;
 	/* Half of sum sign(r): half of the members, less 1 for each below the model. */
 	lanes_int whole = (lanes_int){0} + members / 2, near = {0};
 
-	for (int a = 0; a < members; a++) {
-		const lanes r = *(const lanes *)(m + a * KERNEL_BLOCK) - f;
+	for (int n = 0; n < members; n++) {
+		const lanes r = *(const lanes *)(m + from + n * KERNEL_BLOCK) - f;
 		const lanes size = (lanes)((lanes_int)r & 0x7fffffff);
 
 		sum->error += size;
@@ -195,21 +194,24 @@ __attribute__((always_inline)) static inline void add_lanes(int members, bool cu
 
 	if (members % 2)
 		half += 0.5F;
-	sum->slope_w += half * w;
-	sum->slope_s += half * s;
+	for (int t = 0; t < terms; t++)
+		sum->slope[t] += half * a[t];
 	if (curved) {
 		const lanes density = -__builtin_convertvector(near, lanes) * rough_inverse(wide);
-		const lanes dw = density * w, ds = density * s;
+		int second = 0;
 
-		sum->dd += dw * w;
-		sum->ds += dw * s;
-		sum->ss += ds * s;
+		for (int t = 0; t < terms; t++) {
+			const lanes part = density * a[t];
+
+			for (int u = t; u < terms; u++)
+				sum->curvature[second++] += part * a[u];
+		}
 	}
 }
 
 /* The sums of a block, a lane each, in double. */
 struct lane_sums {
-	lanes_double error, slope_w, slope_s, dd, ds, ss;
+	lanes_double error, slope[KERNEL_TERMS], curvature[KERNEL_SECOND];
 };
 
 __attribute__((always_inline)) static inline lanes_double widen(lanes a, lanes b)
@@ -227,79 +229,90 @@ static inline double total(const lanes_double *a)
 }
 
 /* A run, with two accumulators in turn, so that one addition need not wait for the other. */
-__attribute__((always_inline)) static inline void run(int members, bool curved, const float *m, const float *w,
-						      const float *s, const struct lane_evaluation *at,
-						      struct lane_sums *sums)
+__attribute__((always_inline)) static inline void run(int terms, int members, bool curved, const float *m,
+						      const float *const term[], int from,
+						      const struct lane_evaluation *at, struct lane_sums *sums)
 {
 	struct accumulator a = {0}, b = {0};
 
-	for (int n = 0; n < RUN; n += 2 * LANES) {
+	for (int n = from; n < from + RUN; n += 2 * LANES) {
 		/* What comes next in memory, the next channel or block: the processor's own prefetching ends at each page. */
 		for (int member = members; member < 2 * members; member++)
 			__builtin_prefetch(m + n + member * KERNEL_BLOCK);
-		add_lanes(members, curved, m + n, w + n, s + n, at, &a);
-		add_lanes(members, curved, m + n + LANES, w + n + LANES, s + n + LANES, at, &b);
+		add_lanes(terms, members, curved, m, term, n, at, &a);
+		add_lanes(terms, members, curved, m, term, n + LANES, at, &b);
 	}
 	sums->error += widen(a.error, b.error);
-	sums->slope_w += widen(a.slope_w, b.slope_w);
-	sums->slope_s += widen(a.slope_s, b.slope_s);
-	if (curved) {
-		sums->dd += widen(a.dd, b.dd);
-		sums->ds += widen(a.ds, b.ds);
-		sums->ss += widen(a.ss, b.ss);
-	}
+	for (int t = 0; t < terms; t++)
+		sums->slope[t] += widen(a.slope[t], b.slope[t]);
+	if (curved)
+		for (int t = 0; t < terms * (terms + 1) / 2; t++)
+			sums->curvature[t] += widen(a.curvature[t], b.curvature[t]);
 }
 
-__attribute__((always_inline)) static inline void block(int members, bool curved, const float *m, const float *w,
-							const float *s, const struct kernel_evaluation *at,
+__attribute__((always_inline)) static inline void block(int terms, int members, bool curved, const float *m,
+							const float *const term[], const struct kernel_evaluation *at,
 							struct kernel_sums *sums)
 {
 	const lanes zero = {0};
-	const struct lane_evaluation all = {zero + (float)at->d, zero + (float)at->ks, zero + (float)at->tau,
-					    zero + (float)at->floor};
+	struct lane_evaluation all = {.tau = zero + (float)at->tau, .floor = zero + (float)at->floor};
 	struct lane_sums lane = {0};
 
+	for (int t = 0; t < terms; t++)
+		all.x[t] = zero + (float)at->x[t];
 	for (int from = 0; from < KERNEL_BLOCK; from += RUN)
-		run(members, curved, m + from, w + from, s + from, &all, &lane);
-	*sums = (struct kernel_sums){
-		.error = total(&lane.error),
-		.slope = {-2 * total(&lane.slope_w), -2 * total(&lane.slope_s)},
-	};
-	if (curved) {
-		sums->curvature[0] = total(&lane.dd) / at->tau;
-		sums->curvature[1] = total(&lane.ds) / at->tau;
-		sums->curvature[2] = total(&lane.ss) / at->tau;
-	}
-}
-
-__attribute__((always_inline)) static inline void either_block(int members, const float *m, const float *w,
-							       const float *s, const struct kernel_evaluation *at,
-							       struct kernel_sums *sums)
-{
-	if (at->tau > 0)
-		block(members, true, m, w, s, at, sums);
-	else
-		block(members, false, m, w, s, at, sums);
+		run(terms, members, curved, m, term, from, &all, &lane);
+	sums->error = total(&lane.error);
+	for (int t = 0; t < terms; t++)
+		sums->slope[t] = -2 * total(&lane.slope[t]);
+	for (int t = 0; t < terms * (terms + 1) / 2; t++)
+		sums->curvature[t] = curved ? total(&lane.curvature[t]) / at->tau : 0;
 }
 
 /* Each count of members gets a loop of its own. */
-static void pass(int members, const float *m, const float *w, const float *s, const struct kernel_evaluation *at,
-		 struct kernel_sums *sums)
+__attribute__((always_inline)) static inline void members_block(int terms, int members, bool curved, const float *m,
+								const float *const term[],
+								const struct kernel_evaluation *at,
+								struct kernel_sums *sums)
 {
 	switch (members) {
 	case 1:
-		either_block(1, m, w, s, at, sums);
+		block(terms, 1, curved, m, term, at, sums);
 		break;
 	case 2:
-		either_block(2, m, w, s, at, sums);
+		block(terms, 2, curved, m, term, at, sums);
 		break;
 	case 3:
-		either_block(3, m, w, s, at, sums);
+		block(terms, 3, curved, m, term, at, sums);
 		break;
 	case 6:
-		either_block(6, m, w, s, at, sums);
+		block(terms, 6, curved, m, term, at, sums);
 		break;
 	}
+}
+
+/* And so does each count of terms. */
+#define PASS(terms)                                                                                                    \
+	static void pass_##terms(int members, const float *m, const float *const term[],                               \
+				 const struct kernel_evaluation *at, struct kernel_sums *sums)                         \
+	{                                                                                                              \
+		if (at->tau > 0)                                                                                       \
+			members_block(terms, members, true, m, term, at, sums);                                        \
+		else                                                                                                   \
+			members_block(terms, members, false, m, term, at, sums);                                       \
+	}
+PASS(2)
+PASS(3)
+PASS(4)
+PASS(5)
+
+static void pass(int terms, int members, const float *m, const float *const term[], const struct kernel_evaluation *at,
+		 struct kernel_sums *sums)
+{
+	static void (*const of[])(int, const float *, const float *const[], const struct kernel_evaluation *,
+				  struct kernel_sums *) = {NULL, NULL, pass_2, pass_3, pass_4, pass_5};
+
+	of[terms](members, m, term, at, sums);
 }
 
 const struct kernel KERNEL_NAME = {NAME_TEXT(KERNEL_NAME), lobe, lobe_scattered, pass};

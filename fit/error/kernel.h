@@ -25,6 +25,7 @@ struct kernel_g1 {
 enum kernel_gaf {
 	KERNEL_SEPARABLE,  /* G1(i) G1(o) */
 	KERNEL_CORRELATED, /* 1 / (1/G1(i) + 1/G1(o) - 1) */
+	KERNEL_SUM,        /* G1(i) + G1(o): no masking, but the grazing term's function of either direction */
 	KERNEL_STATIC,     /* G depends on the geometry alone and stands in geometric_factor already */
 };
 
@@ -76,17 +77,20 @@ struct kernel_shape {
 	struct kernel_curve P22, G1, F;
 };
 
-/* Where a pass evaluates the error: d = kd/pi and ks. tau: relative width of the window in which the curvature is estimated, 0 for none;
- * floor: added to the model, in units of the weight, where the window's width is concerned. */
+/* A model is a sum of so many terms at most, each a fixed number a sample times a coefficient: the diffuse term, w itself, first. */
+enum { KERNEL_TERMS = 5, KERNEL_SECOND = KERNEL_TERMS * (KERNEL_TERMS + 1) / 2 };
+
+/* Where a pass evaluates the error: the coefficients, kd/pi first. tau: relative width of the window in which the curvature is
+ * estimated, 0 for none; floor: added to the model, in units of the weight, where the window's width is concerned. */
 struct kernel_evaluation {
-	double d, ks, tau, floor;
+	double x[KERNEL_TERMS], tau, floor;
 };
 
-/* What one pass returns for one channel. With f = d w + ks s, d = kd/pi, and r = m - f over the members of the
- * block: error = sum |r|; slope = -sum sign(r) (w, s), a subgradient of the error by (d, ks); curvature (w w, w s, s s): an
+/* What one pass returns for one channel. With f = sum x_t a_t over the terms a_t and r = m - f over the members of the
+ * block: error = sum |r|; slope_t = -sum sign(r) a_t, a subgradient of the error by x; curvature (a_t a_u for t <= u, row by row): an
  * estimate of its second derivatives from the members with |r| < tau (f + floor w). */
 struct kernel_sums {
-	double error, slope[2], curvature[3];
+	double error, slope[KERNEL_TERMS], curvature[KERNEL_SECOND];
 };
 
 struct kernel {
@@ -97,9 +101,10 @@ struct kernel {
 	/* lobe_scattered - the same of scattered samples: s = geometric_factor scale P22 F G. */
 	void (*lobe_scattered)(enum kernel_gaf gaf, const struct kernel_shape *shape,
 			       const struct kernel_scattered *samples, float *s);
-	/* pass - sums of one block. Of each sample it takes `members` values, KERNEL_BLOCK apart: 1 of a single and 2 of a
-	 * pair for one channel, 3 or 6 for the three channels under one kd and ks. */
-	void (*pass)(int members, const float *value, const float *w, const float *s,
+	/* pass - sums of one block for a model of 2 .. KERNEL_TERMS terms; those beyond are not set. Of each sample it takes `members`
+	 * values, KERNEL_BLOCK apart: 1 of a single and 2 of a pair for one channel, 3 or 6 for the three channels under the same
+	 * coefficients. */
+	void (*pass)(int terms, int members, const float *value, const float *const term[],
 		     const struct kernel_evaluation *at, struct kernel_sums *sums);
 };
 

@@ -59,15 +59,15 @@ void masking_free(struct masking *m)
 	*m = (struct masking){0};
 }
 
-void masking_fill(struct masking *m, const struct ndf *ndf)
+void masking_fill_function(struct masking *m, double (*function)(double cot, const void *data), const void *data,
+			   double normal)
 {
 	const int per_node = entries_per_node(m);
 
 	for (int n = 0; n < m->n_nodes; n++) {
 		const double cot = exp2(m->q_floor + (double)(n - MARGIN) / (1 << m->node_bits));
-		const double sine = 1 / sqrt(1 + cot * cot);
 
-		m->node[n] = ndf_G1(ndf, (struct vec3){sine, 0, cot * sine});
+		m->node[n] = function(cot, data);
 	}
 	for (int n = 0; n < m->n_entries - 2; n += per_node) {
 		const double *node = m->node + n / per_node + MARGIN - 2;
@@ -80,7 +80,19 @@ void masking_fill(struct masking *m, const struct ndf *ndf)
 		}
 	}
 	/* The last entry stands for the normal itself. */
-	m->entry[m->n_entries - 2] = m->entry[m->n_entries - 1] = 1;
+	m->entry[m->n_entries - 2] = m->entry[m->n_entries - 1] = (float)normal;
+}
+
+static double G1_of(double cot, const void *ndf)
+{
+	const double sine = 1 / sqrt(1 + cot * cot);
+
+	return ndf_G1(ndf, (struct vec3){sine, 0, cot * sine});
+}
+
+void masking_fill(struct masking *m, const struct ndf *ndf)
+{
+	masking_fill_function(m, G1_of, ndf, 1);
 }
 
 struct kernel_g1 masking_kernel(const struct masking *m)

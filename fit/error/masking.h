@@ -39,6 +39,10 @@ void masking_free(struct masking *masking);
 /* masking_fill - tabulates an isotropic distribution. */
 void masking_fill(struct masking *masking, const struct ndf *ndf);
 
+/* masking_fill_function - the same of any smooth function of cot theta, 0 <= cot < inf, that is `normal` at the normal. */
+void masking_fill_function(struct masking *masking, double (*function)(double cot, const void *data), const void *data,
+			   double normal);
+
 /* six_weights - Lagrange's weights of six equidistant nodes for the point t, 0 <= t < 1, between the third and the fourth. */
 void six_weights(double t, double weight[6]);
 

@@ -4,21 +4,77 @@
 #include <stdlib.h>
 #include <string.h>
 
+struct term_list term_list_of(const struct fit_options *options)
+{
+	struct term_list list = {.n = 2, .term = {TERM_DIFFUSE, TERM_LOBE}};
+	const int lobes = !options->specular ? 0 : options->fresnel == FRESNEL_F82 ? F82_PARTS : 1;
+	const int extra =
+		(lobes > 1 ? lobes - 1 : 0) + (lobes > 0 && options->lobes > 1 ? lobes : 0) + options->grazing;
+
+	if (2 + extra > KERNEL_TERMS || (options->gray_specular && MERL_CHANNELS + 1 + extra > BUNDLE_VARIABLES))
+		return (struct term_list){.n = 0};
+	if (lobes > 1) {
+		list.term[list.n++] = TERM_F82;
+		list.term[list.n++] = TERM_F90;
+	}
+	if (lobes > 0 && options->lobes > 1)
+		list.term[list.n++] = TERM_SECOND;
+	if (options->grazing)
+		list.term[list.n++] = TERM_GRAZING;
+	return list;
+}
+
+static bool has_term(const struct objective *o, enum term term)
+{
+	for (int t = 0; t < o->terms.n; t++)
+		if (o->terms.term[t] == term)
+			return true;
+	return false;
+}
+
+static enum status init_tables(struct objective *o, enum masking_density density)
+{
+	const int32_t q_min = o->table->geometry->q_min;
+	enum status status = STATUS_OK;
+
+	if (o->table->scattered) {
+		o->scattered = calloc(KERNEL_TERMS, sizeof *o->scattered);
+		status = o->scattered ? STATUS_OK : STATUS_NO_MEMORY;
+		for (int t = 1; t < o->terms.n && status == STATUS_OK; t++)
+			status = scattered_lobe_init(&o->scattered[t], density);
+		return status;
+	}
+	status = masking_init(&o->lobe[0].masking, q_min, density);
+	if (status == STATUS_OK && has_term(o, TERM_SECOND))
+		status = masking_init(&o->lobe[1].masking, q_min, density);
+	if (status == STATUS_OK && has_term(o, TERM_GRAZING))
+		status = masking_init(&o->grazing, q_min, density);
+	return status;
+}
+
 enum status objective_init(struct objective *o, const struct sample_set *table, const struct fit_options *options,
 			   const struct ndf_class *class, int threads, enum masking_density density)
 {
-	*o = (struct objective){
-		.table = table, .options = options, .class = class, .kernel = kernel_pick(), .threads = threads};
-	o->tabulated.sigma = NAN;
+	const size_t n = (size_t)table->n_blocks * KERNEL_BLOCK;
+	bool complete = true;
+
+	*o = (struct objective){.table = table,
+				.options = options,
+				.class = class,
+				.kernel = kernel_pick(),
+				.threads = threads,
+				.terms = term_list_of(options)};
+	o->lobe[0].tabulated.sigma = o->lobe[1].tabulated.sigma = o->grazing_exponent = NAN;
 	objective_forget(o);
 	objective_unfix(o);
-	o->s = aligned_alloc(64, (size_t)table->n_blocks * KERNEL_BLOCK * sizeof *o->s);
+	for (int t = 1; t < o->terms.n; t++) {
+		o->term[t] = aligned_alloc(64, n * sizeof *o->term[t]);
+		complete &= o->term[t] != NULL;
+	}
+	o->row = malloc((size_t)o->terms.n * sizeof *o->row);
 	o->sums = malloc((size_t)table->n_blocks * sizeof *o->sums);
 	o->is_exact = table->scattered && density == MASKING_FINE && table->n_samples <= OBJECTIVE_EXACT_SAMPLES;
-	const enum status status = table->scattered ? scattered_lobe_init(&o->scattered, density)
-						    : masking_init(&o->masking, table->geometry->q_min, density);
-
-	if (!o->s || !o->sums || status != STATUS_OK) {
+	if (!complete || !o->row || !o->sums || init_tables(o, density) != STATUS_OK) {
 		objective_free(o);
 		return STATUS_NO_MEMORY;
 	}
@@ -27,30 +83,43 @@ enum status objective_init(struct objective *o, const struct sample_set *table, 
 
 void objective_forget(struct objective *o)
 {
-	o->start.kd[0] = NAN;
+	o->start.error = 0;
 }
 
 void objective_begin(struct objective *o, const struct linear *linear)
 {
 	o->start = *linear;
-	if (linear->error == 0)
-		objective_forget(o);
 }
 
 void objective_free(struct objective *o)
 {
-	masking_free(&o->masking);
-	scattered_lobe_free(&o->scattered);
-	free(o->s);
+	for (int l = 0; l < OBJECTIVE_LOBES; l++)
+		masking_free(&o->lobe[l].masking);
+	masking_free(&o->grazing);
+	for (int t = 0; t < KERNEL_TERMS; t++) {
+		if (o->scattered)
+			scattered_lobe_free(&o->scattered[t]);
+		free(o->term[t]);
+		o->term[t] = NULL;
+	}
+	free(o->scattered);
+	free(o->row);
 	free(o->sums);
-	o->s = NULL;
+	o->scattered = NULL;
+	o->row = NULL;
 	o->sums = NULL;
 }
 
 struct shape shape_of(const struct cook_torrance *model)
 {
 	const struct ndf *ndf = &model->ndf;
-	struct shape shape = {.sigma = ndf->sigma_x, .gamma = ndf->gamma, .ior = model->n, .k = model->k};
+	struct shape shape = {.sigma = ndf->sigma_x,
+			      .gamma = ndf->gamma,
+			      .ior = model->n,
+			      .k = model->k,
+			      .second_sigma = model->second.sigma_x,
+			      .second_gamma = model->second.gamma,
+			      .grazing = model->grazing};
 
 	if (ndf->sigma_x != ndf->sigma_y) {
 		shape.sigma = sqrt(ndf->sigma_x * ndf->sigma_y);
@@ -73,113 +142,234 @@ enum status shape_ndf(const struct shape *shape, const struct ndf_class *class, 
 	return status == STATUS_UNSUPPORTED ? STATUS_OK : status;
 }
 
-static void tabulate_ndf(struct objective *o, const struct ndf *ndf)
+struct shape shape_second(const struct shape *shape)
+{
+	struct shape second = *shape;
+
+	second.sigma = shape->second_sigma;
+	second.gamma = shape->second_gamma;
+	return second;
+}
+
+static bool is_of_facets(enum term term)
+{
+	return term != TERM_DIFFUSE && term != TERM_GRAZING;
+}
+
+static int lobe_of(enum term term)
+{
+	return term == TERM_SECOND;
+}
+
+static void tabulate_ndf(struct objective *o, int which, const struct ndf *ndf)
 {
 	const struct geometry *g = o->table->geometry;
 	const bool with_masking = o->options->criterion.gaf != GAF_V_GROOVE;
+	struct objective_lobe *lobe = &o->lobe[which];
 
-	if (o->table->scattered && o->is_exact && !o->given)
-		o->exact.ndf = *ndf;
+	if (o->table->scattered && o->is_exact && !lobe->given)
+		lobe->exact = *ndf;
 	else if (o->table->scattered)
-		scattered_lobe_ndf(&o->scattered, &o->table->range, ndf, with_masking);
-	if (o->table->scattered && !o->given)
+		for (int t = 1; t < o->terms.n; t++)
+			if (is_of_facets(o->terms.term[t]) && lobe_of(o->terms.term[t]) == which)
+				scattered_lobe_ndf(&o->scattered[t], &o->table->range, ndf, with_masking);
+	if (o->table->scattered && !lobe->given)
 		return;
 	for (int i = 0; i < MERL_THETA_H; i++)
-		o->D[i] = ndf_D(ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
+		lobe->D[i] = ndf_D(ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
 	if (with_masking && !o->table->scattered)
-		masking_fill(&o->masking, ndf);
+		masking_fill(&lobe->masking, ndf);
 }
 
 void objective_use(struct objective *o, const struct ndf *ndf)
 {
-	o->given = true;
-	tabulate_ndf(o, ndf);
+	o->lobe[0].given = true;
+	tabulate_ndf(o, 0, ndf);
 }
 
-static enum status tabulate(struct objective *o, const struct shape *shape)
+static enum status tabulate_lobe(struct objective *o, int which, const struct shape *shape)
 {
+	struct objective_lobe *lobe = &o->lobe[which];
+	const struct shape *have = &lobe->tabulated;
+	const bool same_gamma = shape->gamma == have->gamma || !ndf_has_gamma(o->class);
 	struct ndf ndf;
 
-	const bool same_gamma = shape->gamma == o->tabulated.gamma || !ndf_has_gamma(o->class);
-
-	if (o->given || (shape->sigma == o->tabulated.sigma && same_gamma && shape->stretch == o->tabulated.stretch &&
-			 shape->angle == o->tabulated.angle))
+	if (lobe->given || (shape->sigma == have->sigma && same_gamma && shape->stretch == have->stretch &&
+			    shape->angle == have->angle))
 		return STATUS_OK;
 	const enum status status = shape_ndf(shape, o->class, o->options->lambda, &ndf);
 
 	if (status != STATUS_OK)
 		return status;
-	tabulate_ndf(o, &ndf);
-	o->tabulated = *shape;
+	tabulate_ndf(o, which, &ndf);
+	lobe->tabulated = *shape;
 	return STATUS_OK;
+}
+
+/* (1 - cos theta)^exponent, without cancellation where cot is large. */
+static double grazing_of(double cot, const void *exponent)
+{
+	const double root = sqrt(1 + cot * cot);
+
+	return pow(1 / (root * (root + cot)), *(const double *)exponent);
+}
+
+static enum status tabulate(struct objective *o, const struct shape *shape)
+{
+	enum status status = tabulate_lobe(o, 0, shape);
+
+	if (status == STATUS_OK && has_term(o, TERM_SECOND)) {
+		const struct shape second = shape_second(shape);
+
+		status = tabulate_lobe(o, 1, &second);
+	}
+	if (has_term(o, TERM_GRAZING) && !o->table->scattered && shape->grazing != o->grazing_exponent) {
+		masking_fill_function(&o->grazing, grazing_of, &shape->grazing, 0);
+		o->grazing_exponent = shape->grazing;
+	}
+	return status;
+}
+
+/* F of a term: that of the shape, or the part that one of the three reflectances is the coefficient of. */
+static double F_of_term(const struct objective *o, enum term term, double cos_d)
+{
+	double part[F82_PARTS];
+
+	if (o->options->fresnel != FRESNEL_F82)
+		return fresnel_F(o->options->fresnel, cos_d, o->optics.n, o->optics.k);
+	fresnel_f82_parts(cos_d, part);
+	return part[term - TERM_LOBE];
+}
+
+struct term_F {
+	const struct objective *objective;
+	enum term term;
+};
+
+static double F_at(const void *data, double cos_d)
+{
+	const struct term_F *of = data;
+
+	return F_of_term(of->objective, of->term, cos_d);
 }
 
 /* D F beyond this, a sigma below 1e-10, counts as this: times the largest geometric_factor, 1/(4 1e-9 1e-9), it is still a float. */
 #define ROW_MAX 1e20
 
-static void fill_rows(struct objective *o, const struct shape *shape)
+static void fill_row(const struct objective *o, enum term term, float row[MERL_ROWS])
 {
+	const struct halfdiff_trig *theta = o->table->geometry->entries.theta;
+	const double *D = o->lobe[lobe_of(term)].D;
 	float F[MERL_THETA_D];
 
-	if (o->table->scattered) {
-		o->exact.gaf = o->options->criterion.gaf;
-		o->exact.fresnel = o->options->fresnel;
-		o->exact.n = shape->ior;
-		o->exact.k = shape->k;
-		if (!o->is_exact || o->given)
-			scattered_lobe_fresnel(&o->scattered, &o->table->range, o->options->fresnel, shape->ior,
-					       shape->k);
-		return;
-	}
-
 	for (int j = 0; j < MERL_THETA_D; j++)
-		F[j] = (float)fresnel_F(o->options->fresnel, o->table->geometry->entries.theta[j].cos_d, shape->ior,
-					shape->k);
-	for (int i = 0; i < MERL_THETA_H; i++)
+		F[j] = (float)(term == TERM_GRAZING ? theta[j].cos_d * theta[j].cos_d / M_PI
+						    : F_of_term(o, term, theta[j].cos_d));
+	for (int i = 0; i < MERL_THETA_H; i++) {
+		const float D_i = term == TERM_GRAZING ? 1 : (float)fmin(D[i], ROW_MAX);
+
 		for (int j = 0; j < MERL_THETA_D; j++)
-			o->row[j + MERL_THETA_D * i] = (float)fmin(o->D[i], ROW_MAX) * F[j];
+			row[j + MERL_THETA_D * i] = D_i * F[j];
+	}
 }
 
-/* The lobe at the samples of a block, no table involved. */
-static void exact_block(struct objective *o, int block)
+static void fill_rows(struct objective *o, const struct shape *shape)
 {
-	const struct sample_set *t = o->table;
-	const struct scattered *scattered = t->scattered;
+	o->optics.gaf = o->options->criterion.gaf;
+	o->optics.n = shape->ior;
+	o->optics.k = shape->k;
+	o->optics.grazing = shape->grazing;
+	for (int t = 1; t < o->terms.n; t++) {
+		const struct term_F of = {o, o->terms.term[t]};
+
+		if (!o->table->scattered)
+			fill_row(o, of.term, o->row[t]);
+		else if ((!o->is_exact || o->lobe[0].given) && is_of_facets(of.term))
+			scattered_lobe_F(&o->scattered[t], &o->table->range, F_at, &of);
+	}
+}
+
+/* Beyond it a float would overflow. */
+#define TERM_MAX 1e30
+
+/* A term at a pair of directions, no table involved. */
+static double exact_term(const struct objective *o, enum term term, struct vec3 wi, struct vec3 wo)
+{
+	double cos_d;
+
+	if (term == TERM_GRAZING)
+		return cook_torrance_grazing(o->optics.grazing, wi.z, wo.z,
+					     fmin(0.5 * vec3_length(vec3_add(wi, wo)), 1));
+	const double facets = cook_torrance_facets(&o->lobe[lobe_of(term)].exact, o->optics.gaf, wi, wo, &cos_d);
+
+	return facets == 0 ? 0 : F_of_term(o, term, cos_d) * facets;
+}
+
+static void exact_block(struct objective *o, int t, int block)
+{
+	const struct sample_set *table = o->table;
+	const struct scattered *scattered = table->scattered;
 	const size_t from = (size_t)block * KERNEL_BLOCK;
 
 	for (size_t n = from; n < from + KERNEL_BLOCK; n++) {
-		const struct vec3 wi = scattered->wi[t->entry[n]], wo = scattered->wo[t->entry[n]];
+		const struct vec3 wi = scattered->wi[table->entry[n]], wo = scattered->wo[table->entry[n]];
 
-		o->s[n] = t->w[n] > 0 ? (float)fmin((double)t->w[n] * cook_torrance_lobe(&o->exact, wi, wo), 1e30) : 0;
+		o->term[t][n] =
+			table->w[n] > 0
+				? (float)fmin((double)table->w[n] * exact_term(o, o->terms.term[t], wi, wo), TERM_MAX)
+				: 0;
 	}
 }
 
-static void lobe_block(struct objective *o, int block)
+static enum kernel_gaf kernel_gaf(const struct objective *o)
 {
 	static const enum kernel_gaf gaf[GAF_COUNT] = {[GAF_UNCORRELATED] = KERNEL_SEPARABLE,
 						       [GAF_CORRELATED] = KERNEL_CORRELATED,
 						       [GAF_V_GROOVE] = KERNEL_STATIC};
 
-	if (o->is_exact && !o->given) {
-		exact_block(o, block);
-		return;
-	}
-	if (o->table->scattered) {
-		const struct kernel_scattered samples = sample_set_scattered_block(o->table, block);
-
-		o->kernel->lobe_scattered(gaf[o->options->criterion.gaf], &o->scattered.shape, &samples,
-					  o->s + (size_t)block * KERNEL_BLOCK);
-		return;
-	}
-	const struct kernel_g1 g1 = masking_kernel(&o->masking);
-	const struct kernel_samples samples = sample_set_block(o->table, block);
-
-	o->kernel->lobe(gaf[o->options->criterion.gaf], &g1, o->row, &samples, o->s + (size_t)block * KERNEL_BLOCK);
+	return gaf[o->options->criterion.gaf];
 }
 
-/* What a pass is asked by each of the problems, one a channel or one for all of them. */
+static void table_block(struct objective *o, int t, int block)
+{
+	const size_t at = (size_t)block * KERNEL_BLOCK;
+	const enum term term = o->terms.term[t];
+	const bool grazing = term == TERM_GRAZING;
+	const struct kernel_g1 g1 = masking_kernel(grazing ? &o->grazing : &o->lobe[lobe_of(term)].masking);
+	struct kernel_samples samples = sample_set_block(o->table, block);
+
+	if (grazing)
+		samples.geometric_factor = o->table->w + at;
+	o->kernel->lobe(grazing ? KERNEL_SUM : kernel_gaf(o), &g1, o->row[t], &samples, o->term[t] + at);
+}
+
+static void scattered_block(struct objective *o, int t, int block)
+{
+	const struct kernel_scattered samples = sample_set_scattered_block(o->table, block);
+
+	o->kernel->lobe_scattered(kernel_gaf(o), &o->scattered[t].shape, &samples,
+				  o->term[t] + (size_t)block * KERNEL_BLOCK);
+}
+
+static void lobe_block(struct objective *o, int block)
+{
+	for (int t = 1; t < o->terms.n; t++)
+		if (!o->table->scattered)
+			table_block(o, t, block);
+		else if ((o->is_exact && !o->lobe[0].given) || o->terms.term[t] == TERM_GRAZING)
+			exact_block(o, t, block);
+		else
+			scattered_block(o, t, block);
+}
+
+/* A solve goes over slices: a channel each, or one that stands for all. */
+static int n_slices(const struct objective *o)
+{
+	return o->options->gray ? 1 : MERL_CHANNELS;
+}
+
+/* What a pass is asked for each slice. */
 struct evaluation {
-	int n_problems;
 	bool wanted[MERL_CHANNELS];
 	struct kernel_evaluation at[MERL_CHANNELS];
 };
@@ -188,35 +378,59 @@ static void pass_block(struct objective *o, const struct evaluation *asked, int 
 {
 	const struct sample_set *t = o->table;
 	const size_t at = (size_t)block * KERNEL_BLOCK;
-	const int members = (block < t->n_pair_blocks ? 2 : 1) * MERL_CHANNELS / asked->n_problems;
+	const int members = (block < t->n_pair_blocks ? 2 : 1) * MERL_CHANNELS / n_slices(o);
+	const float *term[KERNEL_TERMS] = {t->w + at};
 
-	for (int p = 0; p < asked->n_problems; p++)
-		if (asked->wanted[p])
-			o->kernel->pass(members, sample_set_value(t, block, p), t->w + at, o->s + at, &asked->at[p],
-					&o->sums[block][p]);
+	for (int n = 1; n < o->terms.n; n++)
+		term[n] = o->term[n] + at;
+	for (int c = 0; c < n_slices(o); c++)
+		if (asked->wanted[c])
+			o->kernel->pass(o->terms.n, members, sample_set_value(t, block, c), term, &asked->at[c],
+					&o->sums[block][c]);
 }
 
 /* The same of values that stand in the unit of a sample set. */
-static struct evaluation in_unit(const struct evaluation *asked, double unit)
+static struct evaluation in_unit(const struct objective *o, const struct evaluation *asked)
 {
 	struct evaluation own = *asked;
 
-	for (int p = 0; p < own.n_problems; p++) {
-		own.at[p].d *= unit;
-		own.at[p].ks *= unit;
-		own.at[p].floor *= unit;
+	for (int c = 0; c < n_slices(o); c++) {
+		for (int t = 0; t < o->terms.n; t++)
+			own.at[c].x[t] *= o->table->unit;
+		own.at[c].floor *= o->table->unit;
 	}
 	return own;
 }
 
-/* One pass over the table; with `lobe`, s is computed on the way, while each block is in cache. The blocks' sums are
- * added in their order: the result is the same to the bit for any number of threads. Tasks, not a parallel loop: on a
- * busy machine this thread then does what the others do not come to, and never waits for one that has not begun. */
+/* The sums of all blocks for one slice, added in their order: the result is the same to the bit for any number of threads. */
+static struct kernel_sums add_blocks(const struct objective *o, int slice)
+{
+	const int second = o->terms.n * (o->terms.n + 1) / 2;
+	struct kernel_sums total = {0};
+
+	for (int block = 0; block < o->table->n_blocks; block++) {
+		const struct kernel_sums *sums = &o->sums[block][slice];
+
+		total.error += sums->error;
+		for (int a = 0; a < o->terms.n; a++)
+			total.slope[a] += sums->slope[a];
+		for (int a = 0; a < second; a++)
+			total.curvature[a] += sums->curvature[a];
+	}
+	total.error /= o->table->unit;
+	for (int a = 0; a < second; a++)
+		total.curvature[a] *= o->table->unit;
+	return total;
+}
+
+/* One pass over the table; with `lobe`, the terms are computed on the way, while each block is in cache. Tasks, not a
+ * parallel loop: on a busy machine this thread then does what the others do not come to, and never waits for one that
+ * has not begun. */
 static void pass(struct objective *o, const struct evaluation *wanted, bool lobe, struct kernel_sums total[])
 {
 	enum { CHUNK = 8 };
 	const size_t n_blocks = (size_t)o->table->n_blocks;
-	const struct evaluation own = in_unit(wanted, o->table->unit), *asked = &own;
+	const struct evaluation own = in_unit(o, wanted), *asked = &own;
 
 	o->passes++;
 #pragma GCC diagnostic push
@@ -228,21 +442,9 @@ static void pass(struct objective *o, const struct evaluation *wanted, bool lobe
 		pass_block(o, asked, (int)block);
 	}
 #pragma GCC diagnostic pop
-	for (int p = 0; p < asked->n_problems; p++) {
-		total[p] = (struct kernel_sums){0};
-		for (size_t block = 0; asked->wanted[p] && block < n_blocks; block++) {
-			const struct kernel_sums *sums = &o->sums[block][p];
-
-			total[p].error += sums->error;
-			for (int a = 0; a < 2; a++)
-				total[p].slope[a] += sums->slope[a];
-			for (int a = 0; a < 3; a++)
-				total[p].curvature[a] += sums->curvature[a];
-		}
-		total[p].error /= o->table->unit;
-		for (int a = 0; a < 3; a++)
-			total[p].curvature[a] *= o->table->unit;
-	}
+	for (int c = 0; c < n_slices(o); c++)
+		if (asked->wanted[c])
+			total[c] = add_blocks(o, c);
 }
 
 enum status objective_lobe(struct objective *o, const struct shape *shape)
@@ -270,14 +472,27 @@ static double diffuse_value(double kd)
 	return (double)(float)(kd / M_PI);
 }
 
+static double largest_coefficient(const struct fit_options *options, enum term term)
+{
+	if (term == TERM_DIFFUSE)
+		return options->diffuse ? diffuse_value(objective_upper_bound(options, false)) : 0;
+	if (term == TERM_GRAZING)
+		return objective_upper_bound(options, false);
+	return options->specular ? objective_upper_bound(options, true) : 0;
+}
+
 void objective_unfix(struct objective *o)
 {
-	const struct fit_options *options = o->options;
-	const double kd = options->diffuse ? diffuse_value(objective_upper_bound(options, false)) : 0;
-	const double ks = options->specular ? objective_upper_bound(options, true) : 0;
-
 	for (int c = 0; c < MERL_CHANNELS; c++)
-		o->box[c] = (struct objective_box){{0, 0}, {kd, ks}};
+		for (int t = 0; t < o->terms.n; t++) {
+			o->box[c].lo[t] = 0;
+			o->box[c].hi[t] = largest_coefficient(o->options, o->terms.term[t]);
+		}
+}
+
+static bool is_joint(const struct objective *o)
+{
+	return o->options->gray_specular;
 }
 
 void objective_fix(struct objective *o, int channel, bool specular, double value)
@@ -285,7 +500,7 @@ void objective_fix(struct objective *o, int channel, bool specular, double value
 	const double at = specular ? (double)(float)value : diffuse_value(value);
 
 	for (int c = 0; c < MERL_CHANNELS; c++)
-		if (c == channel || o->options->gray)
+		if (c == channel || o->options->gray || (specular && is_joint(o)))
 			o->box[c].lo[specular] = o->box[c].hi[specular] = at;
 }
 
@@ -299,40 +514,116 @@ static bool within_twice(double a, double b)
  * no place to begin where the lobe is so high that its own is 1e-8: the way there is too long for a quadratic model. */
 static bool helps(const struct shape *a, const struct shape *b)
 {
-	return within_twice(a->sigma, b->sigma) && within_twice(a->ior - 1, b->ior - 1) && within_twice(a->k, b->k);
+	return within_twice(a->sigma, b->sigma) && within_twice(a->ior - 1, b->ior - 1) && within_twice(a->k, b->k) &&
+	       within_twice(a->second_sigma, b->second_sigma);
+}
+
+/* The problems that a solve falls into: one a slice, or one for all where the slices share coefficients. */
+static int n_problems(const struct objective *o)
+{
+	return is_joint(o) ? 1 : n_slices(o);
+}
+
+/* The unknown of a problem that a slice's coefficient is. Where they share, kd of each channel comes first. */
+static int unknown_of(const struct objective *o, int slice, int t)
+{
+	return !is_joint(o) ? t : t == 0 ? slice : MERL_CHANNELS - 1 + t;
+}
+
+static int n_unknowns(const struct objective *o)
+{
+	return o->terms.n + (is_joint(o) ? MERL_CHANNELS - 1 : 0);
+}
+
+/* The slices of a problem. */
+static int first_slice(const struct objective *o, int p)
+{
+	return is_joint(o) ? 0 : p;
+}
+
+static int end_slice(const struct objective *o, int p)
+{
+	return is_joint(o) ? n_slices(o) : p + 1;
+}
+
+static double sum_measured(const struct objective *o, int p)
+{
+	const double *sum = o->table->sum;
+
+	return n_problems(o) == 1 ? sum[0] + sum[1] + sum[2] : sum[p];
 }
 
 /* The mean measurement of a problem. */
 static double mean_measured(const struct objective *o, int p)
 {
-	const struct sample_set *t = o->table;
+	return sum_measured(o, p) / (n_problems(o) == 1 ? MERL_CHANNELS : 1) / o->table->sum_w;
+}
 
-	return (o->options->gray ? (t->sum[0] + t->sum[1] + t->sum[2]) / MERL_CHANNELS : t->sum[p]) / t->sum_w;
+/* 0 <= F <= 1 where three reflectances in [0, 1] do not say so themselves, on either side of cos_d = 1/7. */
+static void constrain_F(const struct objective *o, struct bundle_domain *domain, int first)
+{
+	static const double cos_d[] = {0.01, 0.03, 0.06, 0.1, 0.19, 0.25, 0.32, 0.42};
+
+	for (size_t a = 0; a < sizeof cos_d / sizeof *cos_d; a++) {
+		double part[F82_PARTS];
+
+		fresnel_f82_parts(cos_d[a], part);
+		for (int side = 0; side < 2; side++) {
+			double *normal = domain->normal[domain->n_linear];
+
+			memset(normal, 0, sizeof domain->normal[0]);
+			for (int i = 0; i < F82_PARTS; i++)
+				normal[first + i] = side ? part[i] : -part[i];
+			domain->level[domain->n_linear++] = side ? objective_upper_bound(o->options, true) : 0;
+		}
+	}
+}
+
+static struct bundle_domain domain_of(const struct objective *o, int p)
+{
+	struct bundle_domain domain = {.n = n_unknowns(o)};
+
+	for (int c = first_slice(o, p); c < end_slice(o, p); c++)
+		for (int t = 0; t < o->terms.n; t++) {
+			domain.lo[unknown_of(o, c, t)] = o->box[c].lo[t];
+			domain.hi[unknown_of(o, c, t)] = o->box[c].hi[t];
+		}
+	const int first = unknown_of(o, first_slice(o, p), 1);
+
+	if (o->options->fresnel == FRESNEL_F82 && domain.hi[first + 1] > 0)
+		constrain_F(o, &domain, first);
+	return domain;
 }
 
 /* A solve that is to be this precise is one of a small step, relative: what the last one has learnt holds for it too. */
 #define PRECISE 1e-5
 
-/* With one kd and ks for all channels there is one problem, their sum; else one a channel. */
-static void start(const struct objective *o, const struct shape *shape, struct l1 problem[], int n_problems,
-		  double tolerance, bool certify)
+static void start(const struct objective *o, const struct shape *shape, struct bundle problem[], double tolerance,
+		  bool certify)
 {
 	const bool precise = tolerance < PRECISE;
-	const bool afresh = isnan(o->start.kd[0]) || (precise && !helps(&o->start.shape, shape));
-	const double *sum = o->table->sum;
+	const bool afresh = o->start.error == 0 || (precise && !helps(&o->start.shape, shape));
 
-	for (int p = 0; p < n_problems; p++) {
-		const struct objective_box *box = &o->box[p];
-		const double scale = n_problems == 1 ? sum[0] + sum[1] + sum[2] : sum[p];
-		const double known[2] = {o->start.kd[p] / M_PI, o->start.ks[p]};
-		const bool faint = sum[p] > 0 && mean_measured(o, p) < L1_FAR * fmax(box->hi[0], box->hi[1]);
-		const bool cold = afresh || faint, at_zero = box->lo[0] == 0 && box->lo[1] == 0;
+	for (int p = 0; p < n_problems(o); p++) {
+		const struct bundle_domain domain = domain_of(o, p);
+		double known[BUNDLE_VARIABLES], largest = 0;
+		bool at_zero = true;
 
-		l1_start(&problem[p], box->lo, box->hi,
-			 !cold     ? known
-			 : at_zero ? NULL
-				   : box->lo,
-			 !cold && precise ? o->start.h[p] : NULL, scale, tolerance, certify);
+		for (int c = first_slice(o, p); c < end_slice(o, p); c++)
+			for (int t = 0; t < o->terms.n; t++)
+				known[unknown_of(o, c, t)] = o->start.coefficient[c][t];
+		for (int i = 0; i < domain.n; i++) {
+			largest = fmax(largest, domain.hi[i]);
+			at_zero &= domain.lo[i] == 0;
+		}
+		const double sum = sum_measured(o, p);
+		const bool faint = sum > 0 && mean_measured(o, p) < BUNDLE_FAR * largest, cold = afresh || faint;
+
+		bundle_start(&problem[p], &domain,
+			     !cold     ? known
+			     : at_zero ? NULL
+				       : domain.lo,
+			     !cold && precise ? o->start.h[p] : NULL, sum, tolerance, certify);
 	}
 }
 
@@ -344,24 +635,24 @@ static double kd_of(const struct objective *o, double diffuse)
 	return diffuse < diffuse_value(maximum) ? diffuse * M_PI : maximum;
 }
 
-static void finish(const struct objective *o, const struct l1 problem[], int n_problems, struct linear *linear)
+static void finish(const struct objective *o, const struct bundle problem[], struct linear *linear)
 {
-	double sum = 0;
+	const double sum = o->table->sum[0] + o->table->sum[1] + o->table->sum[2];
 
 	*linear = (struct linear){.error = 0};
 	for (int c = 0; c < MERL_CHANNELS; c++) {
-		const struct l1 *p = &problem[n_problems == 1 ? 0 : c];
+		const int slice = c < n_slices(o) ? c : 0;
+		const struct bundle *p = &problem[is_joint(o) ? 0 : slice];
 
-		linear->kd[c] = kd_of(o, p->best[0]);
-		linear->ks[c] = p->best[1];
-		sum += o->table->sum[c];
+		for (int t = 0; t < o->terms.n; t++)
+			linear->coefficient[c][t] = p->best[unknown_of(o, slice, t)];
+		linear->kd[c] = kd_of(o, linear->coefficient[c][0]);
 	}
-	for (int p = 0; p < n_problems; p++) {
+	for (int p = 0; p < n_problems(o); p++) {
 		linear->channel[p] = problem[p].error / sum;
 		linear->error += linear->channel[p];
-		memcpy(linear->h[p], problem[p].h, sizeof linear->h[p]);
-		if (problem[p].certify)
-			linear->lower_bound += l1_lower_bound(&problem[p]) / sum;
+		bundle_second(&problem[p], linear->h[p]);
+		linear->lower_bound += problem[p].certify ? problem[p].lower_bound / sum : 0;
 	}
 }
 
@@ -371,11 +662,50 @@ static double window_floor(const struct objective *o, int p)
 	return 0.02 * mean_measured(o, p);
 }
 
+static void ask(const struct objective *o, const struct bundle problem[], struct evaluation *asked)
+{
+	for (int p = 0; p < n_problems(o); p++)
+		for (int c = first_slice(o, p); c < end_slice(o, p); c++) {
+			struct kernel_evaluation *at = &asked->at[c];
+
+			asked->wanted[c] = !problem[p].done;
+			at->tau = problem[p].tau;
+			at->floor = window_floor(o, p);
+			for (int t = 0; t < o->terms.n; t++)
+				at->x[t] = problem[p].x[unknown_of(o, c, t)];
+		}
+}
+
+/* The place of a second derivative, i <= j, among those of n unknowns. */
+static int second_at(int n, int i, int j)
+{
+	return i * n - i * (i - 1) / 2 + j - i;
+}
+
+/* Hands a problem what its slices came to. */
+static void update(const struct objective *o, int p, const struct kernel_sums total[], struct bundle *problem)
+{
+	double error = 0, slope[BUNDLE_VARIABLES] = {0}, second[BUNDLE_SECOND] = {0};
+
+	for (int c = first_slice(o, p); c < end_slice(o, p); c++) {
+		const double *curvature = total[c].curvature;
+
+		error += total[c].error;
+		for (int t = 0; t < o->terms.n; t++) {
+			const int i = unknown_of(o, c, t);
+
+			slope[i] += total[c].slope[t];
+			for (int u = t; u < o->terms.n; u++)
+				second[second_at(n_unknowns(o), i, unknown_of(o, c, u))] += *curvature++;
+		}
+	}
+	bundle_update(problem, error, slope, second);
+}
+
 double objective_eval(struct objective *o, const struct shape *shape, double tolerance, bool certify,
 		      struct linear *linear)
 {
-	const int n_problems = o->options->gray ? 1 : MERL_CHANNELS;
-	struct l1 problem[MERL_CHANNELS];
+	struct bundle problem[MERL_CHANNELS];
 	struct kernel_sums total[MERL_CHANNELS];
 	bool lobe = true, going = true;
 
@@ -384,46 +714,65 @@ double objective_eval(struct objective *o, const struct shape *shape, double tol
 		return OBJECTIVE_NO_FIT;
 	}
 	fill_rows(o, shape);
-	start(o, shape, problem, n_problems, tolerance, certify);
+	start(o, shape, problem, tolerance, certify);
 	while (going) {
-		struct evaluation asked = {.n_problems = n_problems};
+		struct evaluation asked = {.wanted = {false}};
 
-		for (int p = 0; p < n_problems; p++) {
-			asked.wanted[p] = !problem[p].done;
-			asked.at[p] = (struct kernel_evaluation){problem[p].x[0], problem[p].x[1], problem[p].tau,
-								 window_floor(o, p)};
-		}
+		ask(o, problem, &asked);
 		pass(o, &asked, lobe, total);
 		lobe = going = false;
-		for (int p = 0; p < n_problems; p++) {
+		for (int p = 0; p < n_problems(o); p++) {
 			if (!problem[p].done)
-				l1_update(&problem[p], total[p].error, total[p].slope, total[p].curvature);
+				update(o, p, total, &problem[p]);
 			going |= !problem[p].done;
 		}
 	}
-	finish(o, problem, n_problems, linear);
+	finish(o, problem, linear);
 	linear->shape = *shape;
 	o->start = *linear;
 	return linear->error;
 }
 
-double objective_error(struct objective *o, const struct shape *shape, const double kd[], const double ks[])
+double objective_error(struct objective *o, const struct shape *shape, const struct linear *linear)
 {
 	double error = 0, sum = 0;
 	struct kernel_sums total[MERL_CHANNELS];
-	struct evaluation asked = {.n_problems = MERL_CHANNELS};
+	struct evaluation asked = {.wanted = {false}};
 
 	if (tabulate(o, shape) != STATUS_OK)
 		return OBJECTIVE_NO_FIT;
 	fill_rows(o, shape);
-	for (int c = 0; c < MERL_CHANNELS; c++) {
+	for (int c = 0; c < n_slices(o); c++) {
 		asked.wanted[c] = true;
-		asked.at[c] = (struct kernel_evaluation){.d = kd[c] / M_PI, .ks = ks[c]};
+		memcpy(asked.at[c].x, linear->coefficient[c], sizeof asked.at[c].x);
 	}
 	pass(o, &asked, true, total);
-	for (int c = 0; c < MERL_CHANNELS; c++) {
+	for (int c = 0; c < n_slices(o); c++)
 		error += total[c].error;
+	for (int c = 0; c < MERL_CHANNELS; c++)
 		sum += o->table->sum[c];
-	}
 	return error / sum;
+}
+
+void linear_set_model(const struct linear *linear, const struct fit_options *options, struct cook_torrance *model)
+{
+	const struct term_list list = term_list_of(options);
+	const bool f82 = options->specular && options->fresnel == FRESNEL_F82;
+
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		double value[TERM_COUNT] = {0};
+
+		for (int t = 0; t < list.n; t++)
+			value[list.term[t]] = linear->coefficient[c][t];
+		model->kd[c] = linear->kd[c];
+		model->kg[c] = value[TERM_GRAZING];
+		model->ks_second[c] = value[TERM_SECOND];
+		/* The three reflectances in units of the largest that F may be. */
+		model->ks[c] = !f82 ? value[TERM_LOBE]
+			       : options->unbounded
+				       ? fmax(fmax(value[TERM_LOBE], value[TERM_F82]), fmax(value[TERM_F90], 1))
+				       : objective_upper_bound(options, true);
+		for (int i = 0; i < F82_PARTS && f82; i++)
+			model->reflectance[c][i] = value[TERM_LOBE + i] / model->ks[c];
+	}
 }

@@ -1,62 +1,99 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* objective - the error of a shape: the best that any kd and ks make of it on a table. */
+/* objective - the error of a shape: the best that any coefficients of its terms make of it on a table. */
 #ifndef OBJECTIVE_H
 #define OBJECTIVE_H
 
-#include "fit/error/l1.h"
+#include "fit/error/bundle.h"
 #include "fit/error/masking.h"
 #include "fit/error/sample_set.h"
 #include "fit/error/scattered_lobe.h"
 
 /* struct shape - what a fit searches: the parameters in which the model is not linear. */
 struct shape {
-	double sigma, gamma, ior, k; /* sigma: sqrt(sigma_x sigma_y) where they differ */
-	double stretch;              /* ln(sigma_x/sigma_y); 0: isotropic */
-	double angle;                /* of the axis of sigma_x, degrees */
+	double sigma, gamma, ior, k;       /* sigma: sqrt(sigma_x sigma_y) where they differ */
+	double stretch;                    /* ln(sigma_x/sigma_y); 0: isotropic */
+	double angle;                      /* of the axis of sigma_x, degrees */
+	double second_sigma, second_gamma; /* of the second lobe */
+	double grazing;                    /* exponent of the grazing term */
 };
 
 /* shape_of - the shape of a model. */
 struct shape shape_of(const struct cook_torrance *model);
 
 /* shape_ndf - the distribution of a shape, with Lambda in the given form where the class has it, else exact.
- * Returns STATUS_DOMAIN where the class does not take the shape, or the form not its gamma. */
+ * Returns STATUS_DOMAIN where the class does not take the shape, or the form not its gamma.
+ * shape_second - the shape of its second lobe. */
 MUST_CHECK enum status shape_ndf(const struct shape *shape, const struct ndf_class *class, enum lambda_form lambda,
 				 struct ndf *ndf);
+struct shape shape_second(const struct shape *shape);
 
-/* struct linear - the parameters in which it is, and how good they are. */
-struct linear {
-	double kd[MERL_CHANNELS], ks[MERL_CHANNELS];
-	double error;                  /* E */
-	double h[MERL_CHANNELS][3];    /* what the solve has learnt of the second derivatives by (kd/pi, ks) */
-	struct shape shape;            /* whose they are */
-	double channel[MERL_CHANNELS]; /* the part of E that each has; of a gray fit the first stands for all */
-	double lower_bound;            /* no kd, ks of this shape goes below it (certified evaluations only; else 0) */
+/* The terms of a model: each a fixed number at a sample times a coefficient of each channel. */
+enum term {
+	TERM_DIFFUSE, /* kd; its coefficient is kd/pi */
+	TERM_LOBE,    /* ks, or of FRESNEL_F82 what F0 is the coefficient of */
+	TERM_F82,
+	TERM_F90,
+	TERM_SECOND,
+	TERM_GRAZING,
+	TERM_COUNT
 };
 
-/* An error that no fit can have (kd = ks = 0 gives 1), finite as nlopt wants it. */
+/* struct term_list - those of a fit, the diffuse one and a lobe first; a term that the options leave out has coefficient 0. */
+struct term_list {
+	int n;
+	enum term term[KERNEL_TERMS];
+};
+
+/* term_list_of - the terms of a fit. n is 0 where they would be too many: more than KERNEL_TERMS, or more unknowns than
+ * BUNDLE_VARIABLES. */
+struct term_list term_list_of(const struct fit_options *options);
+
+/* struct linear - the parameters in which it is linear, and how good they are. */
+struct linear {
+	double kd[MERL_CHANNELS];
+	double coefficient[MERL_CHANNELS][KERNEL_TERMS]; /* by the term list's order; [0] is kd/pi */
+	double error;                                    /* E */
+	double h[MERL_CHANNELS][BUNDLE_SECOND];          /* what the solve has learnt of the second derivatives */
+	struct shape shape;                              /* whose they are */
+	double channel[MERL_CHANNELS]; /* the part of E that each problem has: a channel, or the first all of them */
+	double lower_bound; /* no coefficients of this shape go below it (certified evaluations only; else 0) */
+};
+
+/* linear_set_model - gives a model the coefficients. */
+void linear_set_model(const struct linear *linear, const struct fit_options *options, struct cook_torrance *model);
+
+/* An error that no fit can have (all coefficients 0 gives 1), finite as nlopt wants it. */
 #define OBJECTIVE_NO_FIT 1e3
+
+enum { OBJECTIVE_LOBES = 2 };
 
 struct objective {
 	const struct sample_set *table;
 	const struct fit_options *options;
 	const struct ndf_class *class;
 	const struct kernel *kernel;
-	int threads;                     /* more than 1: called by one thread of an OpenMP team, whose others help */
-	struct masking masking;          /* G1 of the shape */
-	struct scattered_lobe scattered; /* in its place for scattered entries */
-	struct cook_torrance exact;      /* the shape itself, where is_exact */
-	bool is_exact;                   /* scattered entries, few enough to have the lobe at each without tables */
-	float *s;                        /* the lobe, a float a sample */
+	int threads; /* more than 1: called by one thread of an OpenMP team, whose others help */
+	struct term_list terms;
+	struct objective_lobe {
+		struct masking masking; /* G1 of the shape */
+		double D[MERL_THETA_H];
+		struct ndf exact;       /* the shape itself, where is_exact */
+		bool given;             /* objective_use() has said which D and G1 */
+		struct shape tabulated; /* the shape that masking and D stand for, ior and k aside */
+	} lobe[OBJECTIVE_LOBES];
+	struct scattered_lobe *scattered; /* for scattered entries, in their place: one a term */
+	struct masking grazing;           /* the grazing term's function of a direction, */
+	double grazing_exponent;          /* for this exponent */
+	struct cook_torrance optics;      /* F of the shape, and G */
+	bool is_exact;                    /* scattered entries, few enough to have the terms at each without tables */
+	float *term[KERNEL_TERMS];        /* a float a sample; [0] is not used: it is the weight */
+	float (*row)[MERL_ROWS];          /* one a term */
 	struct kernel_sums (*sums)[MERL_CHANNELS]; /* one set a block */
-	double D[MERL_THETA_H];
-	float row[MERL_ROWS];
-	bool given;             /* objective_use() has said which D and G1 */
-	struct shape tabulated; /* the shape that masking and D stand for, ior and k aside */
-	long passes;            /* over the table, so far */
-	struct linear start;    /* where the next inner solve begins: the last one's end */
+	long passes;                               /* over the table, so far */
+	struct linear start;                       /* where the next inner solve begins: the last one's end */
 	struct objective_box {
-		double lo[2], hi[2]; /* of kd/pi and ks */
-	} box[MERL_CHANNELS];        /* as the options have it, but for what is fixed */
+		double lo[KERNEL_TERMS], hi[KERNEL_TERMS]; /* of the coefficients */
+	} box[MERL_CHANNELS];                              /* as the options have it, but for what is fixed */
 };
 
 /* Up to so many scattered entries, a MASKING_FINE objective has the lobe exactly, rounded to float. */
@@ -74,7 +111,7 @@ void objective_begin(struct objective *objective, const struct linear *linear);
 
 /* objective_upper_bound - the upper end of kd, or of ks: far beyond any material when unbounded. */
 double objective_upper_bound(const struct fit_options *options, bool specular);
-/* objective_fix - holds kd (or ks) of a channel, of all of them in a gray fit, at a value from now on;
+/* objective_fix - holds kd (or the coefficient of the lobe) of a channel, or of all that share it, at a value from now on;
  * objective_unfix - all are free again. */
 void objective_fix(struct objective *objective, int channel, bool specular, double value);
 void objective_unfix(struct objective *objective);
@@ -83,16 +120,16 @@ void objective_unfix(struct objective *objective);
  * read during the call. */
 void objective_use(struct objective *objective, const struct ndf *ndf);
 
-/* objective_lobe - the specular term of a shape for ks = 1, sample by sample, into objective->s.
+/* objective_lobe - the terms of a shape, sample by sample, into objective->term: [1] is the lobe for ks = 1.
  * Returns STATUS_DOMAIN outside the NDF's domain. */
 MUST_CHECK enum status objective_lobe(struct objective *objective, const struct shape *shape);
 
-/* objective_eval - minimises E over kd and ks in the box of the options, to `tolerance` (relative to the sum of w m):
+/* objective_eval - minimises E over the coefficients in the box of the options, to `tolerance` (relative to the sum of w m):
  * by Newton's estimate, or certified. Returns E, or OBJECTIVE_NO_FIT outside the NDF's domain. */
 double objective_eval(struct objective *objective, const struct shape *shape, double tolerance, bool certify,
 		      struct linear *linear);
 
-/* objective_error - E at given kd and ks, in one pass; OBJECTIVE_NO_FIT outside the NDF's domain. */
-double objective_error(struct objective *objective, const struct shape *shape, const double kd[], const double ks[]);
+/* objective_error - E at given coefficients, in one pass; OBJECTIVE_NO_FIT outside the NDF's domain. */
+double objective_error(struct objective *objective, const struct shape *shape, const struct linear *linear);
 
 #endif

@@ -28,6 +28,8 @@ struct fit_options fit_options_default(void)
 		.fresnel = FRESNEL_DIELECTRIC,
 		.diffuse = true,
 		.specular = true,
+		.lobes = 1,
+		.grazing_exponent = 5,
 		.ior = NAN,
 		.gamma = NAN,
 		.sigma = NAN,

@@ -47,6 +47,8 @@ static inline bool criterion_equal(const struct criterion *a, const struct crite
 #define FIT_IOR_MIN 1.0001
 #define FIT_IOR_MAX 100.0
 #define FIT_K_MAX 100.0
+#define FIT_GRAZING_MIN 1.0 /* exponent of the grazing term */
+#define FIT_GRAZING_MAX 20.0
 #define FIT_FACTOR_MAX 1e6 /* kd, ks when unbounded: far beyond any material */
 
 enum { FIT_NDFS_MAX = 16, FIT_THREADS_MAX = 1024 };
@@ -71,10 +73,14 @@ struct fit_options {
 	enum fresnel fresnel;
 	enum lambda_form lambda; /* of STD and its family; the other NDFs have their exact form only */
 	bool unbounded;          /* kd, ks in [0, inf) instead of [0, 1] */
-	double blend;  /* in (0, 1): kd in [0, 1 - blend], ks in [0, blend], not unbounded; 0 (default): not so */
-	bool diffuse;  /* false: kd = 0 */
-	bool specular; /* false: ks = 0, no shape is searched */
-	bool gray;     /* one kd and one ks for the three channels */
+	double blend;       /* in (0, 1): kd in [0, 1 - blend], ks in [0, blend], not unbounded; 0 (default): not so */
+	bool diffuse;       /* false: kd = 0 */
+	bool specular;      /* false: ks = 0, no shape is searched */
+	bool gray;          /* one kd and one ks for the three channels */
+	bool gray_specular; /* one ks (and what else is specular) for the three channels, but three kd; not with gray */
+	int lobes;          /* 1, or 2: a second lobe of the same NDF, with a sigma and gamma of its own */
+	bool grazing;       /* a diffuse term of grazing directions beside Lambert's, see cook_torrance_grazing(); */
+	double grazing_exponent;  /* its exponent, or NaN */
 	double ior, gamma, sigma; /* fixed value, or NaN */
 	bool anisotropic;         /* sigma_x and sigma_y may differ; the isotropic fit is made beside it */
 	double sigma_y;           /* anisotropic: fixed with sigma, which is sigma_x then, or NaN */

@@ -128,23 +128,9 @@ void scattered_lobe_ndf(struct scattered_lobe *lobe, const struct sample_range *
 	lobe->shape.G1 = octave_table_kernel(&lobe->G1);
 }
 
-struct fresnel_term {
-	enum fresnel fresnel;
-	double n, k;
-};
-
-static double F_at(const void *data, double cos_d)
+void scattered_lobe_F(struct scattered_lobe *lobe, const struct sample_range *range,
+		      double (*F)(const void *data, double cos_d), const void *data)
 {
-	const struct fresnel_term *term = data;
-
-	return fresnel_F(term->fresnel, cos_d, term->n, term->k);
-}
-
-void scattered_lobe_fresnel(struct scattered_lobe *lobe, const struct sample_range *range, enum fresnel fresnel,
-			    double n, double k)
-{
-	const struct fresnel_term term = {fresnel, n, k};
-
-	octave_table_fill(&lobe->F, OCTAVES_ENDED, 0, range->cos_d_min, 1, F_at, &term);
+	octave_table_fill(&lobe->F, OCTAVES_ENDED, 0, range->cos_d_min, 1, F, data);
 	lobe->shape.F = octave_table_kernel(&lobe->F);
 }

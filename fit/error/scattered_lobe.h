@@ -33,8 +33,8 @@ void scattered_lobe_free(struct scattered_lobe *lobe);
 /* scattered_lobe_ndf - prepares D and G1 of a distribution for the samples of a range; with_masking: G1 is wanted. */
 void scattered_lobe_ndf(struct scattered_lobe *lobe, const struct sample_range *range, const struct ndf *ndf,
 			bool with_masking);
-/* scattered_lobe_fresnel - prepares F. */
-void scattered_lobe_fresnel(struct scattered_lobe *lobe, const struct sample_range *range, enum fresnel fresnel,
-			    double n, double k);
+/* scattered_lobe_F - prepares F, a function of cos_d. */
+void scattered_lobe_F(struct scattered_lobe *lobe, const struct sample_range *range,
+		      double (*F)(const void *data, double cos_d), const void *data);
 
 #endif

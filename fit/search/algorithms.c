@@ -114,9 +114,15 @@ static double error_at(struct run *r, const double x[], struct shape *shape, str
 	*shape = space_shape(&r->space, inside);
 	if (!r->algorithm->joint)
 		return objective_eval(&r->objective, shape, 1e-6, false, linear);
+	double ks[MERL_CHANNELS];
+
 	read_factors(o, false, &factor, linear->kd);
-	read_factors(o, true, &factor, linear->ks);
-	linear->error = objective_error(&r->objective, shape, linear->kd, linear->ks);
+	read_factors(o, true, &factor, ks);
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		linear->coefficient[c][0] = linear->kd[c] / M_PI;
+		linear->coefficient[c][1] = ks[c];
+	}
+	linear->error = objective_error(&r->objective, shape, linear);
 	return linear->error;
 }
 
@@ -307,7 +313,7 @@ static enum status certify(struct run *r)
 		return status;
 	objective_eval(o, &f->shape, 1e-7, true, &best);
 	if (r->algorithm->joint) {
-		f->linear.error = objective_error(o, &f->shape, f->linear.kd, f->linear.ks);
+		f->linear.error = objective_error(o, &f->shape, &f->linear);
 		f->linear.lower_bound = best.lower_bound;
 	} else {
 		f->linear = best;

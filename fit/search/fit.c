@@ -136,10 +136,7 @@ static enum status result_with_ndf(const struct run *run, const struct found *fo
 	m->fresnel = o->fresnel;
 	m->n = found->shape.ior;
 	m->k = found->shape.k;
-	for (int c = 0; c < MERL_CHANNELS; c++) {
-		m->kd[c] = found->linear.kd[c];
-		m->ks[c] = found->linear.ks[c];
-	}
+	linear_set_model(&found->linear, o, m);
 	status = metrics_compute(&run->context->geometry, run->measurement, m, o->threads, &r->metrics);
 	if (status != STATUS_OK)
 		return status;

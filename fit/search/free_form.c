@@ -75,8 +75,8 @@ static enum status evaluate(struct run *r, struct state *s, double tolerance, bo
 
 	if (status != STATUS_OK)
 		return status;
-	s->D[MERL_THETA_H] *= scale_of(s->D, r->full.D);
-	memcpy(s->D, r->full.D, sizeof r->full.D);
+	s->D[MERL_THETA_H] *= scale_of(s->D, r->full.lobe[0].D);
+	memcpy(s->D, r->full.lobe[0].D, sizeof r->full.lobe[0].D);
 	objective_eval(&r->full, &s->shape, tolerance, certify, &s->linear);
 	r->evaluations++;
 	return STATUS_OK;
@@ -101,8 +101,8 @@ static int row_of(const struct run *r, size_t n)
 static float lobe_per_D(const struct run *r, const struct state *s, size_t n, int row)
 {
 	if (!r->sample->scattered)
-		return r->thin.s[n];
-	return s->D[row] > 0 ? r->thin.s[n] / (float)s->D[row] : 0;
+		return r->thin.term[1][n];
+	return s->D[row] > 0 ? r->thin.term[1][n] / (float)s->D[row] : 0;
 }
 
 /* Adds the values of D that sample n asks of its row to `wanted`. Returns how many it added. */
@@ -114,7 +114,7 @@ static int sample_values(const struct run *r, const struct state *s, size_t n, i
 
 	for (int c = 0; c < MERL_CHANNELS; c++) {
 		const float *value = sample_set_value(t, block, c) + n % KERNEL_BLOCK;
-		const float per_D = (float)(s->linear.ks[c] * t->unit) * lobe_per_D(r, s, n, row),
+		const float per_D = (float)(s->linear.coefficient[c][1] * t->unit) * lobe_per_D(r, s, n, row),
 			    below = (float)(s->linear.kd[c] / M_PI * t->unit) * t->w[n];
 
 		for (int a = 0; a < members && per_D > 0; a++)
@@ -137,7 +137,7 @@ static enum status propose(struct run *r, const struct state *s, double D[MERL_T
 	/* At scattered entries the lobe is that of D as it is; at those of a table, that of D = 1. */
 	for (int i = 0; i < MERL_THETA_H; i++)
 		unit[i] = 1;
-	memcpy(r->thin.D, unit, sizeof unit);
+	memcpy(r->thin.lobe[0].D, unit, sizeof unit);
 	status = objective_lobe(&r->thin, &s->shape);
 	if (status != STATUS_OK)
 		return status;

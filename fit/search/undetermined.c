@@ -319,7 +319,9 @@ static unsigned bits_of_factor(const struct fit_options *options, int channel, b
 {
 	const unsigned first = specular ? BOUND_KS_R : BOUND_KD_R;
 
-	return options->gray ? first | first << 1 | first << 2 : first << channel;
+	const bool shared = options->gray || (specular && options->gray_specular);
+
+	return shared ? first | first << 1 | first << 2 : first << channel;
 }
 
 /* Notes by how much each channel's error rises at one shape, whose own E may be refitted to `above` that of the optimum:
@@ -336,6 +338,11 @@ static void note_increase(struct refit_context *q, struct objective *o, const st
 	objective_eval(o, shape, 1e-4, false, &white);
 	q->evaluations += 2;
 	for (int c = 0; c < MERL_CHANNELS; c++) {
+		/* Where channels share ks, a channel has no part of E to itself: nothing is known before refits. */
+		if (q->options->gray_specular) {
+			q->increase[0][c] = q->increase[1][c] = 0;
+			continue;
+		}
 		q->increase[0][c] = fmin(q->increase[0][c], above + white.channel[c] - free.channel[c]);
 		q->increase[1][c] = fmin(q->increase[1][c], above + lambert->channel[c] - free.channel[c]);
 	}
@@ -408,7 +415,9 @@ static enum status ask(struct refit_context *q, int n, unsigned determined, bool
 	const int channel = (n - q->space.dims) / 2;
 	const bool specular = (n - q->space.dims) % 2;
 
-	if ((options->gray && channel > 0) || !(specular ? options->specular : options->diffuse))
+	const bool shared = options->gray || (specular && options->gray_specular);
+
+	if ((shared && channel > 0) || !(specular ? options->specular : options->diffuse))
 		return STATUS_OK;
 	status = factor(q, channel, specular, &undetermined);
 	*bits = undetermined ? bits_of_factor(options, channel, specular) : 0;

@@ -1,28 +1,30 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/search/within.h"
+#include "fit/error/objective.h"
 
-/* A variant: the terms it has. Bits of what makes a model richer, so that one variant lies inside another if its bits
- * do. */
-enum term {
-	TERM_DIFFUSE = 1 << 0,
-	TERM_SPECULAR = 1 << 1,
-	TERM_COLOUR = 1 << 2,
-	TERM_FRESNEL = 1 << 3,
-	TERM_AXES = 1 << 4, /* sigma_x, sigma_y and their angle */
-	TERMS = 1 << 5
+/* A variant: what it has. Bits of what makes a model richer, so that one variant lies inside another if its bits do. */
+enum part {
+	PART_DIFFUSE = 1 << 0,
+	PART_SPECULAR = 1 << 1,
+	PART_COLOUR = 1 << 2,          /* of kd, or of ks where it is alone */
+	PART_COLOUR_SPECULAR = 1 << 3, /* of ks; not without the one before */
+	PART_FRESNEL = 1 << 4,
+	PART_AXES = 1 << 5, /* sigma_x, sigma_y and their angle */
+	PARTS = 1 << 6
 };
 
 struct variant {
-	unsigned terms;
+	unsigned parts;
 	int ndf; /* index into the options' list */
 };
 
-static unsigned all_terms(const struct fit_options *options)
+static unsigned all_parts(const struct fit_options *options)
 {
 	const bool fresnel = options->specular && options->fresnel != FRESNEL_NONE;
-	return (options->diffuse ? TERM_DIFFUSE : 0u) | (options->specular ? TERM_SPECULAR : 0u) |
-	       (options->gray ? 0u : TERM_COLOUR) | (fresnel ? TERM_FRESNEL : 0u) |
-	       (options->anisotropic ? TERM_AXES : 0u);
+	return (options->diffuse ? PART_DIFFUSE : 0u) | (options->specular ? PART_SPECULAR : 0u) |
+	       (options->gray ? 0u : PART_COLOUR) |
+	       (options->gray || options->gray_specular || !options->specular ? 0u : PART_COLOUR_SPECULAR) |
+	       (fresnel ? PART_FRESNEL : 0u) | (options->anisotropic ? PART_AXES : 0u);
 }
 
 /* The shape's free parameters that an NDF has besides sigma. */
@@ -31,25 +33,40 @@ static bool has_free_gamma(const struct fit_options *options, int ndf)
 	return ndf_has_gamma(options->ndf[ndf]) && isnan(options->gamma);
 }
 
+/* A lobe alone is gray or coloured; without one there is nothing to tell NDFs or Fresnel terms apart. */
+static bool is_whole(struct variant v)
+{
+	const bool diffuse = v.parts & PART_DIFFUSE, specular = v.parts & PART_SPECULAR;
+	const bool colour = v.parts & PART_COLOUR, colour_specular = v.parts & PART_COLOUR_SPECULAR;
+
+	if (!specular)
+		return diffuse && v.ndf == 0 && !(v.parts & (PART_FRESNEL | PART_AXES | PART_COLOUR_SPECULAR));
+	return diffuse ? colour || !colour_specular : colour == colour_specular;
+}
+
+static struct fit_options variant_options(const struct fit_options *options, struct variant v);
+
 static bool is_variant(const struct fit_options *options, struct variant v)
 {
-	const unsigned all = all_terms(options);
-	const bool specular = v.terms & TERM_SPECULAR;
-	return !(v.terms & ~all) && v.terms & (TERM_DIFFUSE | TERM_SPECULAR) &&
-	       /* Without a specular term there is nothing to tell NDFs or Fresnel terms apart. */
-	       (specular || (v.ndf == 0 && !(v.terms & (TERM_FRESNEL | TERM_AXES))));
+	if ((v.parts & ~all_parts(options)) || !is_whole(v))
+		return false;
+	const struct fit_options own = variant_options(options, v);
+
+	return term_list_of(&own).n > 0;
 }
 
 static int parameters(const struct fit_options *options, struct variant v)
 {
-	const int channels = v.terms & TERM_COLOUR ? 3 : 1;
-	int n = v.terms & TERM_DIFFUSE ? channels : 0;
-	if (!(v.terms & TERM_SPECULAR))
+	const int kd = v.parts & PART_COLOUR ? MERL_CHANNELS : 1,
+		  ks = v.parts & PART_COLOUR_SPECULAR ? MERL_CHANNELS : 1;
+	int n = v.parts & PART_DIFFUSE ? kd : 0;
+
+	if (!(v.parts & PART_SPECULAR))
 		return n;
-	n += channels + (isnan(options->sigma) ? 1 : 0) + (has_free_gamma(options, v.ndf) ? 1 : 0);
-	if (v.terms & TERM_AXES)
+	n += ks + (isnan(options->sigma) ? 1 : 0) + (has_free_gamma(options, v.ndf) ? 1 : 0);
+	if (v.parts & PART_AXES)
 		n += (isnan(options->sigma_y) ? 1 : 0) + (isnan(options->angle) ? 1 : 0);
-	if (v.terms & TERM_FRESNEL)
+	if (v.parts & PART_FRESNEL)
 		n += (isnan(options->ior) ? 1 : 0) + (options->fresnel == FRESNEL_CONDUCTOR ? 1 : 0);
 	return n;
 }
@@ -57,9 +74,9 @@ static int parameters(const struct fit_options *options, struct variant v)
 /* Whether each model of `inner` is one of `outer`. Fresnel's term goes to a constant as the index grows. */
 static bool is_inside(const struct fit_options *options, struct variant inner, struct variant outer)
 {
-	if (inner.terms & ~outer.terms)
+	if (inner.parts & ~outer.parts)
 		return false;
-	return !(inner.terms & TERM_SPECULAR) || inner.ndf == outer.ndf || has_free_gamma(options, outer.ndf);
+	return !(inner.parts & PART_SPECULAR) || inner.ndf == outer.ndf || has_free_gamma(options, outer.ndf);
 }
 
 /* Order of trial: fewest parameters first, then the terms that stay. */
@@ -68,10 +85,10 @@ static bool is_before(const struct fit_options *options, struct variant a, struc
 	const int n_a = parameters(options, a), n_b = parameters(options, b);
 	if (n_a != n_b)
 		return n_a < n_b;
-	return a.terms != b.terms ? a.terms > b.terms : a.ndf < b.ndf;
+	return a.parts != b.parts ? a.parts > b.parts : a.ndf < b.ndf;
 }
 
-enum { VARIANTS_MAX = TERMS * FIT_NDFS_MAX };
+enum { VARIANTS_MAX = PARTS * FIT_NDFS_MAX };
 
 struct variants {
 	struct variant v[VARIANTS_MAX];
@@ -81,9 +98,9 @@ struct variants {
 static struct variants list_variants(const struct fit_options *options)
 {
 	struct variants list = {.n = 0};
-	for (unsigned terms = 0; terms < TERMS; terms++) {
+	for (unsigned parts = 0; parts < PARTS; parts++) {
 		for (int ndf = 0; ndf < options->n_ndf; ndf++) {
-			const struct variant v = {terms, ndf};
+			const struct variant v = {parts, ndf};
 			if (!is_variant(options, v))
 				continue;
 			int at = list.n++;
@@ -100,15 +117,16 @@ static struct fit_options variant_options(const struct fit_options *options, str
 	struct fit_options o = *options;
 	o.ndf[0] = options->ndf[v.ndf];
 	o.n_ndf = 1;
-	o.diffuse = v.terms & TERM_DIFFUSE;
-	o.specular = v.terms & TERM_SPECULAR;
-	o.gray = !(v.terms & TERM_COLOUR);
-	if (!(v.terms & TERM_AXES)) {
+	o.diffuse = v.parts & PART_DIFFUSE;
+	o.specular = v.parts & PART_SPECULAR;
+	o.gray = !(v.parts & PART_COLOUR);
+	o.gray_specular = o.specular && !o.gray && !(v.parts & PART_COLOUR_SPECULAR);
+	if (!(v.parts & PART_AXES)) {
 		o.anisotropic = false;
 		o.sigma = isnan(o.sigma_y) ? o.sigma : NAN;
 		o.sigma_y = o.angle = NAN;
 	}
-	if (o.specular && !(v.terms & TERM_FRESNEL))
+	if (o.specular && !(v.parts & PART_FRESNEL))
 		o.fresnel = FRESNEL_NONE;
 	return o;
 }
@@ -152,10 +170,10 @@ static enum status try_variant(struct selection *s, int i, struct error *error)
 }
 
 /* The point of a variant in the list; -1 if it is not there. */
-static int find_variant(const struct variants *list, unsigned terms, int ndf)
+static int find_variant(const struct variants *list, unsigned parts, int ndf)
 {
 	for (int i = 0; i < list->n; i++)
-		if (list->v[i].terms == terms && list->v[i].ndf == ndf)
+		if (list->v[i].parts == parts && list->v[i].ndf == ndf)
 			return i;
 	return -1;
 }
@@ -172,11 +190,11 @@ static int take_whole(struct selection *s, const struct fit_result *whole, doubl
 			richest = i;
 	}
 	s->limit = whole[best].error * (1 + percent / 100);
-	*s->chosen = variant_options(s->options, (struct variant){all_terms(s->options), best});
+	*s->chosen = variant_options(s->options, (struct variant){all_parts(s->options), best});
 	*s->result = whole[best];
 	for (int i = 0; i < s->options->n_ndf; i++) {
-		const struct variant v = {all_terms(s->options), i};
-		const int point = find_variant(&s->list, v.terms, i);
+		const struct variant v = {all_parts(s->options), i};
+		const int point = find_variant(&s->list, v.parts, i);
 		if (point < 0)
 			continue;
 		if (whole[i].error > s->limit) {
@@ -204,7 +222,7 @@ static enum status try_lambert(struct selection *s, double percent, bool *chosen
 	s->limit = best * (1 + percent / 100) * 0.997;
 	for (int i = 0; i < s->list.n && !*chosen && status == STATUS_OK; i++) {
 		const struct variant v = s->list.v[i];
-		if (v.terms & TERM_SPECULAR)
+		if (v.parts & PART_SPECULAR)
 			continue;
 		const struct fit_options o = variant_options(s->options, v);
 		status = fit_run(s->context, s->measurement, &o, s->result, error);
@@ -234,10 +252,11 @@ enum status within_run(const struct fit_context *context, const struct measureme
 	if (status != STATUS_OK)
 		return status;
 	const int richest = take_whole(&s, whole, percent);
-	const unsigned all = all_terms(options);
-	/* First the whole model less one term: where that fails, it spares all variants inside. Then the simplest. */
-	for (unsigned term = 1; term < TERMS && status == STATUS_OK; term <<= 1) {
-		const int i = (term & all) ? find_variant(&s.list, all & ~term, richest) : -1;
+	const unsigned all = all_parts(options);
+	/* First the whole model less one part: where that fails, it spares all variants inside. Then the simplest. */
+	for (unsigned part = 1; part < PARTS && status == STATUS_OK; part <<= 1) {
+		const unsigned with_it = part == PART_COLOUR ? part | PART_COLOUR_SPECULAR : part;
+		const int i = (part & all) ? find_variant(&s.list, all & ~with_it, richest) : -1;
 		if (i >= 0)
 			status = try_variant(&s, i, error);
 	}

@@ -5,7 +5,7 @@
 
 #include "fit/search/fit.h"
 
-/* within_run - fits simpler variants of the model in `options` (gray, without diffuse or specular term, without
+/* within_run - fits simpler variants of the model in `options` (gray, with coloured kd but one ks, without diffuse or specular term, without
  * Fresnel, other NDFs of the list) until the one with the fewest parameters is known whose error is at most (1 +
  * percent/100) times the lowest error of the whole model. Of variants with as many parameters, one that keeps the
  * options' own terms. Variants that lie inside one that failed are not fitted: they cannot do better. *chosen receives
