@@ -94,12 +94,13 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "gets samples instead, wi on a grid and wo by half vectors around the mirror direction: anisotropic\n"
 		 "models (--sigma SX,SY) need these.\n"},
 	[COMMAND_RENDER] =
-		{"render", "PATH...", "spheres of measured materials beside those of their models, as PNG",
+		{"render", "[PATH...]", "spheres of measured materials beside those of their models, as PNG",
 		 "Renders a sphere of each measured table and of each model of it in the same light, one row a\n"
 		 "material, with their differences in false colours if there is one material only. The models\n"
 		 "are fitted, taken from a result table (--from, or FILE.csv as the only path: the files it\n"
-		 "names), or given (--kd, --ks, ...). Reports how different model and table look: rmse of linear\n"
-		 "values, delta_e the mean CIEDE2000, ssim the structural similarity; these numbers are all that is\n"
+		 "names), or given (--kd, --ks, ...). A model given so, or by --from FILE.json, may do without\n"
+		 "PATH: its sphere stands alone. Reports how different model and table look: rmse of linear values,\n"
+		 "delta_e the mean CIEDE2000, ssim the structural similarity; these numbers are all that is\n"
 		 "made without -o. With --transmission it takes no PATH, and shows spheres of rough glass.\n"},
 	[COMMAND_PLOT] =
 		{"plot", "PATH...", "fits, or the course of searches, as plots by gnuplot",
