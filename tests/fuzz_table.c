@@ -128,7 +128,8 @@ static void run_command(enum command command, const char *form)
 	const int code = (command == COMMAND_MERGE ? cmd_merge : cmd_compare)(argc, argv, &cancel);
 	capture_end(&err, stderr);
 	capture_end(&out, stdout);
-	PROMISE(code == EXIT_DONE || code == EXIT_FAILED);
+	/* EXIT_USAGE: the file is a measurement, whatever its name. */
+	PROMISE(code == EXIT_DONE || code == EXIT_FAILED || code == EXIT_USAGE);
 	PROMISE(code == EXIT_DONE ? err.size == 0 : is_message(err.text));
 	PROMISE((code == EXIT_DONE) == (out.size > 0));
 	PROMISE(code != EXIT_DONE || !form || strcmp(form, "--json") || json_is_valid(out.text));
