@@ -748,7 +748,7 @@ static void a_reader_that_is_gone_ends_it_quietly(void **state)
 static void output_into_head_ends_silently(void **state)
 {
 	(void)state;
-	static const char *const commands[] = {"a.binary a.binary " CHEAP, "ndf ggx --sigma 0.1 --theta 0:90:0.01",
+	static const char *const commands[] = {("a.binary a.binary " CHEAP), "ndf ggx --sigma 0.1 --theta 0:90:0.01",
 					       "--help", "sample ggx --sigma 0.1 --count 20000"};
 	for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
 		char *whole;
