@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The first byte chooses what is done with a result table: its models are evaluated, as by eval --from; it is compared,
- * as by compare; merged; or resumed. Below 128, the rest of the bytes are the file. From 128 on they are lines that each
- * change a cell of a sound row: the first byte is the column, what follows is the new content; an empty line begins the
- * next row. */
+ * as by compare; merged; or resumed. Below 128, the rest of the bytes are the file. From 128 on they are lines that
+ * each change a cell of a sound row: the first byte is the column, what follows is the new content; an empty line
+ * begins the next row. */
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
 #include "fit/results/result.h"
