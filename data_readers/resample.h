@@ -30,8 +30,8 @@ struct resampled {
  *          larger theta_i or theta_o than was measured.
  *          A measurement that keeps the interpolant of its file (rgl.h) is evaluated by that instead; its mean over 8
  *          turns where it is not isotropic.
- * Returns: STATUS_OK; STATUS_NO_MEMORY, STATUS_DOMAIN (n_phi_d); *table is then cleared. The size, the hash and the counts
- *          of the file go along. `result` may be NULL. */
+ * Returns: STATUS_OK; STATUS_NO_MEMORY, STATUS_DOMAIN (n_phi_d); *table is then cleared. The size, the hash and the
+ *          counts of the file go along. `result` may be NULL. */
 MUST_CHECK enum status measurement_resample(const struct measurement *measurement, enum bins bins, int n_phi_d,
 					    enum gaps gaps, int threads, struct measurement *table,
 					    struct resampled *result);

@@ -24,12 +24,12 @@ enum { SUSPECTS_ALBEDOS = 3 };
 
 /* struct suspects - what was found, and what it was found by. */
 struct suspects {
-	unsigned found;    /* enum suspect */
-	double zero_share; /* of the valid entries in range: those that are 0 in all channels */
-	double ends_at;    /* degrees: the theta_i or theta_o beyond which nothing is measured or all is 0; NaN */
-	double asymmetry; /* mean relative difference of the two halves of a row that the exchange maps on one another */
-	int cosine;       /* SUSPECT_COSINE: 1 of theta_i, 2 of theta_o, 3 of both */
-	size_t n_spikes;  /* entries above 5 times each of their six neighbours, in one channel a row */
+	unsigned found;     /* enum suspect */
+	double zero_share;  /* of the valid entries in range: those that are 0 in all channels */
+	double ends_at;     /* degrees: the theta_i or theta_o beyond which nothing is measured or all is 0; NaN */
+	double asymmetry;   /* mean relative difference of the halves of a row that the exchange maps on one another */
+	int cosine;         /* SUSPECT_COSINE: 1 of theta_i, 2 of theta_o, 3 of both */
+	size_t n_spikes;    /* entries above 5 times each of their six neighbours, in one channel a row */
 	int n_clipped_rows; /* rows (theta_h, theta_d) that have a channel's largest value; of the channel with most */
 	/* The directional-hemispherical albedo at theta_i = 0, 30 and 60 degrees, integrated over what is measured; and
 	 * which share of the hemisphere that is, by the cosine of theta_o. */
