@@ -41,14 +41,15 @@ extern const struct csv_column distribution_columns[DISTRIBUTION_COLUMNS];
 /* Of a table that is read: all text, as a cell that is no number is an error of its row alone. */
 extern const struct csv_column distribution_given_columns[DISTRIBUTION_GIVEN];
 
-/* distribution_table_tabulate - adds a row for each theta with each phi of the options. Errors: STATUS_DOMAIN (no angles, or too
- * many), STATUS_NO_MEMORY, STATUS_INTERRUPTED. */
+/* distribution_table_tabulate - adds a row for each theta with each phi of the options. Errors: STATUS_DOMAIN (no
+ * angles, or too many), STATUS_NO_MEMORY, STATUS_INTERRUPTED. */
 MUST_CHECK enum status distribution_table_tabulate(struct csv_table *table, const struct options *options,
 						   const struct described *item, struct error *error);
 
-/* distribution_table_evaluate - adds the row that `given` describes, its first DISTRIBUTION_GIVEN cells; an empty theta_i
- * or phi_i, and G, are those of the options, an empty phi is 0. Errors: STATUS_DOMAIN: it describes nothing, why is in `error`, and its row, which
- * is added, has no values; STATUS_NO_MEMORY and what distribution_make() returns: no row is added. */
+/* distribution_table_evaluate - adds the row that `given` describes, its first DISTRIBUTION_GIVEN cells; an empty
+ * theta_i or phi_i, and G, are those of the options, an empty phi is 0. Errors: STATUS_DOMAIN: it describes nothing, why
+ * is in `error`, and its row, which is added, has no values; STATUS_NO_MEMORY and what distribution_make() returns: no
+ * row is added. */
 MUST_CHECK enum status distribution_table_evaluate(struct csv_table *table, const struct options *options,
 						   char *const *given, struct error *error);
 
