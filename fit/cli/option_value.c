@@ -70,8 +70,11 @@ const struct option_spec option_specs[] = {
 	{"ndf", 0, KIND_NDFS, MODEL | BENCH | EXPORT, NOT_RECORDED, "NAME", "NDF of the model", AT(fit.ndf), 0, 0},
 	{"gaf", 0, KIND_GAF, SEARCHES | MODEL | SOURCES | NDF | SAMPLE, RECORDED, "NAME", "masking and shadowing G",
 	 AT(fit.criterion.gaf), 0, 0},
-	{"lambda", 0, KIND_LAMBDA, SEARCHES | MODEL | SOURCES | NDF | SAMPLE, RECORDED, "FORM",
+	{"lambda", 0, KIND_LAMBDA, SEARCHES | MODEL | SOURCES, RECORDED, "FORM",
 	 "form of Lambda of STD and its family; other NDFs have the exact one only", AT(fit.lambda), 0, 0},
+	{"lambda", 0, KIND_LAMBDA_OF_ANY, NDF | SAMPLE, NOT_RECORDED, "FORM",
+	 "form of Lambda of STD and its family; trapezoid is for pl, other NDFs have the exact one only",
+	 AT(fit.lambda), 0, 0},
 	{"fresnel", 0, KIND_FRESNEL, SEARCHES | MODEL | SOURCES, RECORDED, "NAME", "Fresnel term F", AT(fit.fresnel), 0,
 	 0},
 	{"weight", 0, KIND_WEIGHTS, FIT, RECORDED, "LIST",
@@ -180,9 +183,12 @@ const struct option_spec option_specs[] = {
 	 AT(theta), 0, 0},
 	{"phi", 0, KIND_WORD, NDF, NOT_RECORDED, "LIST", "azimuths, degrees, likewise; 0 if not given", AT(phi), 0, 0},
 	{"theta-i", 0, KIND_NUMBER, NDF | SAMPLE, NOT_RECORDED, "DEG",
-	 "direction from which normals are seen, at azimuth 0", AT(theta_i), 0, 89.999999},
+	 "direction from which normals are seen; 90 is the limit of grazing incidence", AT(theta_i), 0, 90},
+	{"phi-i", 0, KIND_NUMBER, NDF | SAMPLE, NOT_RECORDED, "DEG", "azimuth of that direction", AT(phi_i), -360, 360},
 	{"sampling", 0, KIND_SAMPLING, SAMPLE, NOT_RECORDED, "NAME",
-	 "which normals; with --theta-i the visible ones where the NDF can, else all", AT(sampling), 0, 0},
+	 "which normals; with --theta-i the visible ones where the NDF can, else all. pseudo: those of GGX or Beckmann "
+	 "where gamma is near enough; rational: visible ones of GGX by a rational fit",
+	 AT(sampling), 0, 0},
 	{"count", 0, KIND_INT, SAMPLE, NOT_RECORDED, "N", "how many", AT(count), 1, 1000000},
 	{"seed", 0, KIND_SEED, SAMPLE, NOT_RECORDED, "N", "seed of the random numbers", AT(fit.seed), 0, 0},
 	{"pictures", 0, KIND_ON, COMPARE, NOT_RECORDED, NULL,
@@ -204,8 +210,9 @@ const struct option_spec option_specs[] = {
 	 AT(size), 8, 4096},
 	{"samples", 0, KIND_INT, RENDER | REPORT, NOT_RECORDED, "N", "samples per pixel, best a power of two",
 	 AT(pixel_samples), 1, 65536},
-	{"sampling", 0, KIND_SAMPLING, RENDER, NOT_RECORDED, "NAME", "normals by which directions are sampled",
-	 AT(sampling), 0, 0},
+	{"sampling", 0, KIND_SAMPLING, RENDER, NOT_RECORDED, "NAME",
+	 "normals by which directions are sampled; visible ones, or all, where the NDF has none such", AT(sampling), 0,
+	 0},
 	{"seed", 0, KIND_SEED, RENDER, NOT_RECORDED, "N", "seed of the samples", AT(fit.seed), 0, 0},
 	{"difference", 0, KIND_ON, RENDER, NOT_RECORDED, NULL,
 	 "show differences in false colours for several materials, too", AT(difference), 0, 0},
@@ -229,6 +236,10 @@ const char *option_choice(enum option_kind kind, int i)
 		return i < GAF_COUNT ? gaf_name((enum gaf)i) : NULL;
 	case KIND_LAMBDA:
 		return i < LAMBDA_FORM_COUNT ? lambda_form_name((enum lambda_form)i) : NULL;
+	case KIND_LAMBDA_OF_ANY:
+		return i <= LAMBDA_FORM_COUNT
+			       ? lambda_form_name(i < LAMBDA_FORM_COUNT ? (enum lambda_form)i : LAMBDA_TRAPEZOID)
+			       : NULL;
 	case KIND_FRESNEL:
 		return i < FRESNEL_COUNT ? fresnel_name((enum fresnel)i) : NULL;
 	case KIND_WEIGHT:
@@ -254,12 +265,23 @@ const char *option_choice(enum option_kind kind, int i)
 	}
 }
 
+static enum status lambda_form_of_student_t(const char *text, enum lambda_form *form)
+{
+	enum lambda_form found;
+	if (lambda_form_find(text, &found) != STATUS_OK || found >= LAMBDA_FORM_COUNT)
+		return STATUS_DOMAIN;
+	*form = found;
+	return STATUS_OK;
+}
+
 static enum status choice_find(enum option_kind kind, const char *text, void *value)
 {
 	switch (kind) {
 	case KIND_GAF:
 		return gaf_find(text, value);
 	case KIND_LAMBDA:
+		return lambda_form_of_student_t(text, value);
+	case KIND_LAMBDA_OF_ANY:
 		return lambda_form_find(text, value);
 	case KIND_FRESNEL:
 		return fresnel_find(text, value);
@@ -588,6 +610,7 @@ void option_write(FILE *file, const struct options *options, const struct option
 		fputs(gaf_name(*(const enum gaf *)value), file);
 		break;
 	case KIND_LAMBDA:
+	case KIND_LAMBDA_OF_ANY:
 		fputs(lambda_form_name(*(const enum lambda_form *)value), file);
 		break;
 	case KIND_FRESNEL:

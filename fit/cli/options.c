@@ -70,10 +70,12 @@ static const struct command_text commands[COMMAND_COUNT] = {
 	[COMMAND_NDF] =
 		{"ndf", "[NAME]", "D, P22, P2, Lambda, G1 and pdf of a distribution as a table",
 		 "Tabulates a normal distribution function: D and pdf of the normal at theta and phi, P22 of its\n"
-		 "slope, P2 of the slope tan(theta) along phi, Lambda and G1 of the direction there; with --theta-i\n"
-		 "the density of the normal among those visible, and the weight of such a sample. NAME is an NDF,\n"
-		 "ellipsoid, or - for rows of standard input: a CSV with the columns ndf, sigma, sigma_y, gamma,\n"
-		 "params, lambda, theta, phi, theta_i, as far as needed. With --from, the NDFs of a result table.\n"},
+		 "slope, P2 of the slope tan(theta) along phi and its moments, Lambda and G1 of the direction there,\n"
+		 "the shares of normals below theta and in (0, phi); with --theta-i the density of the normal among\n"
+		 "those visible, the weight of such a sample, and the CDFs of its slopes along and across that\n"
+		 "direction. NAME is an NDF, ellipsoid, or - for rows of standard input: a CSV with the columns ndf,\n"
+		 "sigma, sigma_y, gamma, params, lambda, theta, phi, theta_i, phi_i, as far as needed. With --from,\n"
+		 "the NDFs of a result table.\n"},
 	[COMMAND_SAMPLE] =
 		{"sample", "[NAME]", "random normals of a distribution, and where they reflect to",
 		 "Draws normals m, visible or all, with their density. With --theta-i also the direction wo into\n"
@@ -92,12 +94,13 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "gets samples instead, wi on a grid and wo by half vectors around the mirror direction: anisotropic\n"
 		 "models (--sigma SX,SY) need these.\n"},
 	[COMMAND_RENDER] =
-		{"render", "PATH...", "spheres of measured materials beside those of their models, as PNG",
+		{"render", "[PATH...]", "spheres of measured materials beside those of their models, as PNG",
 		 "Renders a sphere of each measured table and of each model of it in the same light, one row a\n"
 		 "material, with their differences in false colours if there is one material only. The models\n"
 		 "are fitted, taken from a result table (--from, or FILE.csv as the only path: the files it\n"
-		 "names), or given (--kd, --ks, ...). Reports how different model and table look: rmse of linear\n"
-		 "values, delta_e the mean CIEDE2000, ssim the structural similarity; these numbers are all that is\n"
+		 "names), or given (--kd, --ks, ...). A model given so, or by --from FILE.json, may do without\n"
+		 "PATH: its sphere stands alone. Reports how different model and table look: rmse of linear values,\n"
+		 "delta_e the mean CIEDE2000, ssim the structural similarity; these numbers are all that is\n"
 		 "made without -o. With --transmission it takes no PATH, and shows spheres of rough glass.\n"},
 	[COMMAND_PLOT] =
 		{"plot", "PATH...", "fits, or the course of searches, as plots by gnuplot",

@@ -38,7 +38,7 @@ struct options {
 	/* A distribution, for ndf and sample, in words: distribution.h. */
 	const char *sigma_words, *gamma_words, *params;
 	const char *theta, *phi; /* lists of angles: angles.h */
-	double theta_i;          /* degrees; NaN: not given */
+	double theta_i, phi_i;   /* degrees; theta_i NaN: not given */
 	enum sampling sampling;  /* and for render */
 	int count;
 	int n_phi_d;
@@ -55,7 +55,7 @@ struct options {
 	int size, pixel_samples;
 	bool difference;
 	bool transmission, multiple; /* render: a sphere of glass, with all orders of scattering */
-	bool pictures; /* compare: columns of pictures */
+	bool pictures;               /* compare: columns of pictures */
 	atomic_bool *cancel;
 	char **path; /* what is no option, in the order given */
 	int n_paths;

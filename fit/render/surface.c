@@ -14,9 +14,12 @@ enum status surface_init(struct surface *s, const struct cook_torrance *model, c
 	*s = (struct surface){.model = model, .measured = measured};
 	if (!(mean_of(model->ks) > 0))
 		return STATUS_OK;
-	s->exact = model->ndf;
-	s->exact.lambda_form = LAMBDA_EXACT;
-	s->visible = sampling == SAMPLING_VISIBLE && vndf_supports(&model->ndf);
+	enum sampling used = sampling;
+	if (sampler_init(&s->sampler, &model->ndf, used) != STATUS_OK)
+		used = vndf_supports(&model->ndf) ? SAMPLING_VISIBLE : SAMPLING_NDF;
+	s->own = used == SAMPLING_VISIBLE || used == SAMPLING_NDF;
+	if (used != sampling && sampler_init(&s->sampler, &model->ndf, used) != STATUS_OK)
+		return STATUS_UNSUPPORTED;
 	const struct vec3 lowest = {sqrt(1 - SURFACE_HORIZON * SURFACE_HORIZON), 0, SURFACE_HORIZON};
 	const enum status status = masking_init(&s->masking, masking_q(lowest) - 1, MASKING_FINE);
 	if (status == STATUS_OK)
@@ -37,7 +40,7 @@ struct view surface_view(const struct surface *s, struct vec3 wo)
 	if (!(ks > 0))
 		return view;
 	view.G1 = masking_at(&s->masking, masking_q(wo));
-	view.G1_exact = model->ndf.lambda_form == LAMBDA_EXACT ? view.G1 : ndf_G1(&s->exact, wo);
+	view.G1_exact = model->ndf.lambda_form == LAMBDA_EXACT ? view.G1 : ndf_G1(&s->sampler.proposal, wo);
 	const double lobe = ks * fresnel_F(model->fresnel, wo.z, model->n, model->k);
 	/* Neither part is ever left out: the lobe reflects more than this at grazing angles, and a measured material
 	 * scatters light where its model does not. */
@@ -68,7 +71,13 @@ static struct lobe lobe_at(const struct surface *s, const struct view *view, str
 	const double length = sqrt(vec3_dot(sum, sum)), cos_d = fmin(0.5 * length, 1);
 	const struct vec3 m = vec3_scale(sum, 1 / length);
 	const double D = ndf_D(&model->ndf, m);
-	struct lobe lobe = {0, s->visible ? D * view->G1_exact / (4 * view->wo.z) : D * m.z / (4 * cos_d)};
+	struct lobe lobe = {0, 0};
+	if (!s->own)
+		lobe.pdf = sampler_pdf(&s->sampler, view->wo, m) / (4 * cos_d);
+	else if (s->sampler.procedure == SAMPLING_VISIBLE)
+		lobe.pdf = D * view->G1_exact / (4 * view->wo.z);
+	else
+		lobe.pdf = D * m.z / (4 * cos_d);
 	if (!s->measured)
 		lobe.f = specular_f(s, view, wi, fresnel_F(model->fresnel, cos_d, model->n, model->k) * D);
 	return lobe;
@@ -95,8 +104,7 @@ bool surface_sample(const struct surface *s, const struct view *view, const doub
 	/* The second number chooses between the lobe and the rest, and what is left of it serves there. */
 	if (u[1] < view->specular) {
 		const double rest = u[1] / view->specular;
-		const struct vec3 m =
-			s->visible ? vndf_sample(&s->exact, view->wo, u[0], rest) : ndf_sample(&s->exact, u[0], rest);
+		const struct vec3 m = sampler_sample(&s->sampler, view->wo, u[0], rest);
 		*wi = vec3_sub(vec3_scale(m, 2 * vec3_dot(view->wo, m)), view->wo);
 	} else {
 		const double rest = (u[1] - view->specular) / (1 - view->specular);

@@ -11,8 +11,8 @@
 struct surface {
 	const struct cook_torrance *model; /* borrowed; directions are sampled by its lobe */
 	const struct measured *measured;   /* borrowed; what light does, instead of the model. NULL: the model */
-	struct ndf exact;                  /* the model's NDF with the exact Lambda, as it is sampled */
-	bool visible;
+	struct sampler sampler;
+	bool own;               /* it draws the model's own normals, whose D is at hand */
 	struct masking masking; /* G1 */
 };
 
@@ -20,11 +20,11 @@ struct surface {
 struct view {
 	struct vec3 wo;
 	double G1;       /* of the model */
-	double G1_exact; /* of surface.exact */
+	double G1_exact; /* of the sampler's NDF, if that is the model's own */
 	double specular; /* share of the lobe among the sampled directions; the rest is cosine distributed */
 };
 
-/* surface_init - where the NDF has no sampler of visible normals (vndf_supports()), all are sampled.
+/* surface_init - where the NDF cannot be sampled so (sampler_init()), visible normals are, or else all.
  * STATUS_NO_MEMORY. What is borrowed must outlive the surface. */
 MUST_CHECK enum status surface_init(struct surface *surface, const struct cook_torrance *model,
 				    const struct measured *measured, enum sampling sampling);
