@@ -6,6 +6,7 @@
 #define FRESNEL_H
 
 #include "src/status.h"
+#include <stdbool.h>
 
 enum fresnel {
 	FRESNEL_DIELECTRIC, /* exact, real index n */
@@ -46,6 +47,12 @@ double fresnel_conductor(double cos_d, double eta, double k);
 enum { F82_PARTS = 3 };
 void fresnel_f82_parts(double cos_d, double part[F82_PARTS]);
 double fresnel_f82(double cos_d, const double reflectance[F82_PARTS]);
+
+/* fresnel_has_ior - whether the form is a function of an index of refraction. */
+static inline bool fresnel_has_ior(enum fresnel fresnel)
+{
+	return fresnel != FRESNEL_NONE && fresnel != FRESNEL_F82;
+}
 
 /* fresnel_F - the chosen form; k is read by the conductor only, n by all but FRESNEL_NONE. 1 for FRESNEL_F82, whose
  * reflectances a caller has to know. */
