@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Targets: all (default), check, check-long, check-docs, demo, bench, figures, stability, asan, ubsan, tsan, lint, architecture,
-# valgrind, compilers, fuzz, killtest, install, uninstall, dist, deb, clean. Those that check or show something install what is
+# valgrind, compilers, fuzz, killtest, page-tools, install, uninstall, dist, deb, clean. Those that check or show something install what is
 # missing first.
 VERSION := 0.2.0
 
@@ -60,16 +60,18 @@ endif
 test_sources := $(wildcard tests/test_*.c)
 test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 # Attacks on inputs, outputs and memory, and fits of hard tables: half of the time of all tests.
-only_long := alloc convert export fetch free_form hostile hostile_names hostile_outputs outputs plot resample slurm stiff suspects
+only_long := alloc convert export export_axes fetch free_form hostile hostile_names hostile_outputs outputs plot resample slurm stiff suspects terminal
 # Some cases in check, all in check-long: check.h, case_step().
-with_long_cases := fit objective python scattered_fit
+with_long_cases := dielectric fit objective python random_walk scattered_fit
 short_programs := $(filter-out $(only_long:%=$(BUILD)/tests/test_%),$(test_programs))
 long_programs := $(foreach t,$(only_long) $(with_long_cases),$(BUILD)/tests/test_$(t))
 
 # Made by the program from its own tables; RUN runs it where it is built for another machine, as in RUN=qemu-aarch64.
 manuals := $(BUILD)/stdfit.1 $(BUILD)/completions/stdfit.bash $(BUILD)/completions/_stdfit
 
+# By hand, where no set-up has said so: what is left out, and the package that brings it.
 all: $(BUILD)/stdfit $(manuals)
+	$(if $(filter 0,$(MAKELEVEL)),@scripts/setup.sh note,@:)
 
 $(BUILD)/stdfit: $(BUILD)/fit/commands/main.o $(lib_objects)
 	$(call quiet,LD)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS)
@@ -204,11 +206,15 @@ check-docs: setup
 	@$(MAKE) --no-print-directory all library
 	@MERL='$(MERL)' scripts/check_docs.sh $(BUILD)/stdfit
 
+# What the browser test holds the page of a report against, beside its own eyes.
+page-tools:
+	npm install --no-audit --no-fund --prefix $(BUILD)/npm axe-core html-validate
+
 clean:
 	rm -rf $(BUILD)
 
 include scripts/install.mk
 
-.PHONY: all setup check check-long check-docs check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo clean
+.PHONY: all setup check check-long check-docs check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo page-tools clean
 
 -include $(lib_objects:.o=.d) $(BUILD)/fit/commands/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))

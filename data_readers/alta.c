@@ -37,6 +37,35 @@ static void half_difference(const double *x, struct vec3 *wi, struct vec3 *wo)
 	halfdiff_to_dirs((struct halfdiff){x[0], x[1], x[2]}, wi, wo);
 }
 
+/* Angles that are not given are those that ALTA itself takes: phi_d is 0, or 90 degrees for RUSIN_TH_TD, theta_d is 0. */
+
+static double angle_of(double cosine)
+{
+	return acos(fmin(cosine, 1)); /* 1 but for rounding */
+}
+
+static void half_cosine(const double *x, struct vec3 *wi, struct vec3 *wo)
+{
+	halfdiff_to_dirs((struct halfdiff){angle_of(x[0]), 0, 0}, wi, wo);
+}
+
+static void half_difference_cosines(const double *x, struct vec3 *wi, struct vec3 *wo)
+{
+	halfdiff_to_dirs((struct halfdiff){angle_of(x[0]), angle_of(x[1]), 0}, wi, wo);
+}
+
+static void half_difference_across(const double *x, struct vec3 *wi, struct vec3 *wo)
+{
+	halfdiff_to_dirs((struct halfdiff){x[0], x[1], M_PI / 2}, wi, wo);
+}
+
+/* The light at the normal. */
+static void projected_view(const double *x, struct vec3 *wi, struct vec3 *wo)
+{
+	*wi = (struct vec3){0, 0, 1};
+	*wo = direction(hypot(x[0], x[1]), atan2(x[1], x[0]));
+}
+
 static struct vec3 turned(struct vec3 v, double phi)
 {
 	const double c = cos(phi), s = sin(phi);
@@ -48,6 +77,11 @@ static void half_difference_turned(const double *x, struct vec3 *wi, struct vec3
 	halfdiff_to_dirs((struct halfdiff){x[0], x[2], x[3]}, wi, wo);
 	*wi = turned(*wi, x[1]);
 	*wo = turned(*wo, x[1]);
+}
+
+static void half_turned_difference(const double *x, struct vec3 *wi, struct vec3 *wo)
+{
+	half_difference_turned((const double[]){x[0], x[1], x[2], 0}, wi, wo);
 }
 
 static void cartesian(const double *x, struct vec3 *wi, struct vec3 *wo)
@@ -65,9 +99,17 @@ struct input {
 };
 
 static const struct input inputs[] = {
-	{"SPHERICAL_TL_PL_TV_PV", 4, false, spherical},          {"ISOTROPIC_TV_TL_DPHI", 3, true, isotropic},
-	{"ISOTROPIC_TL_TV_PROJ_DPHI", 3, true, projected},       {"RUSIN_TH_TD_PD", 3, true, half_difference},
-	{"RUSIN_TH_PH_TD_PD", 4, false, half_difference_turned}, {"CARTESIAN", 6, false, cartesian},
+	{"SPHERICAL_TL_PL_TV_PV", 4, false, spherical},
+	{"ISOTROPIC_TV_TL_DPHI", 3, true, isotropic},
+	{"ISOTROPIC_TL_TV_PROJ_DPHI", 3, true, projected},
+	{"RUSIN_TH_TD_PD", 3, true, half_difference},
+	{"RUSIN_TH_PH_TD_PD", 4, false, half_difference_turned},
+	{"CARTESIAN", 6, false, cartesian},
+	{"COS_TH", 1, true, half_cosine},
+	{"COS_TH_TD", 2, true, half_difference_cosines},
+	{"RUSIN_TH_TD", 2, true, half_difference_across},
+	{"RUSIN_TH_PH_TD", 3, false, half_turned_difference},
+	{"ISOTROPIC_TV_PROJ_DPHI", 2, true, projected_view},
 };
 
 enum { INPUTS = sizeof inputs / sizeof *inputs };

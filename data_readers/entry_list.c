@@ -38,6 +38,11 @@ static void note_azimuth(struct entry_list *list, struct vec3 wi)
 	list->several_azimuths = fabs(remainder(azimuth - list->azimuth, M_PI)) > same;
 }
 
+static bool is_finite(struct vec3 v)
+{
+	return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
+}
+
 enum status entry_list_add(struct entry_list *list, const struct entry *entry, bool derived)
 {
 	bool finite = true, negative = false;
@@ -45,8 +50,12 @@ enum status entry_list_add(struct entry_list *list, const struct entry *entry, b
 		finite = finite && fabs(entry->value[c]) <= (double)FLT_MAX;
 		negative = negative || entry->value[c] < 0;
 	}
-	/* Not <=: a direction that is no number is one that cannot be used either. */
-	if (!(entry->wi.z > ENTRY_HORIZON && entry->wo.z > ENTRY_HORIZON)) {
+	/* An azimuth that is not finite leaves z as it is. */
+	if (!is_finite(entry->wi) || !is_finite(entry->wo)) {
+		list->n_nonfinite++;
+		return STATUS_OK;
+	}
+	if (entry->wi.z <= ENTRY_HORIZON || entry->wo.z <= ENTRY_HORIZON) {
 		list->n_below_horizon++;
 		return STATUS_OK;
 	}

@@ -31,7 +31,7 @@ struct entry_list {
 
 #define ENTRY_HORIZON 1e-6 /* a direction whose cosine is not above this counts as below the horizon */
 
-/* entry_list_add - adds an entry, or leaves it out and counts it: for a direction at or below the horizon; else for a value
+/* entry_list_add - adds an entry, or leaves it out and counts it: for a direction that is not finite; for one at or below the horizon; else for a value
  * that is not finite or beyond float; else for one that is negative. If `derived`, the values were computed from a spectrum, and
  * the list's `gamut` says what becomes of a negative one; the entry is counted in n_out_of_gamut in any case. What is too small for a normal float becomes 0. STATUS_NO_MEMORY. */
 MUST_CHECK enum status entry_list_add(struct entry_list *list, const struct entry *entry, bool derived);

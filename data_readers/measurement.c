@@ -190,19 +190,22 @@ double cell_measure(int i, int j)
 	return 4 * w_h * w_d * (M_PI / 180);
 }
 
-const char *measurement_left_out(const struct measurement *measurement, bool masked, char text[MEASUREMENT_LEFT_OUT])
+const char *measurement_left_out(const struct measurement *measurement, enum left_out which, bool masked,
+				 char text[MEASUREMENT_LEFT_OUT])
 {
 	const struct {
 		size_t n;
 		const char *what;
 	} left[] = {{measurement->n_negative, "negative"},
 		    {measurement->n_nonfinite, "not finite"},
+		    {which != LEFT_OUT_VALUES ? measurement->n_missing : 0, "not measured"},
 		    {measurement->n_below_horizon, "at or below the horizon"},
 		    {masked ? measurement->n_out_of_gamut : 0, "out of gamut"}};
+	const bool told = measurement->scattered || which == LEFT_OUT_OF_TABLE;
 	size_t used = 0;
 
 	text[0] = '\0';
-	for (size_t i = 0; measurement->scattered && i < sizeof left / sizeof *left; i++)
+	for (size_t i = 0; told && i < sizeof left / sizeof *left; i++)
 		if (left[i].n)
 			used += (size_t)snprintf(text + used, MEASUREMENT_LEFT_OUT - used, "%s%zu %s", used ? "; " : "",
 						 left[i].n, left[i].what);

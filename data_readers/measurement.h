@@ -55,6 +55,12 @@ struct measurement {
 	size_t n_out_of_gamut;       /* scattered: entries whose colour has a negative part in linear sRGB */
 };
 
+/* measurement_turns - whether the sample's azimuth counts: scattered entries that are not isotropic. */
+static inline bool measurement_turns(const struct measurement *measurement)
+{
+	return measurement->scattered && measurement->scattered->symmetry != SYMMETRY_ISOTROPIC;
+}
+
 /* symmetry_name - "isotropic", "plane", "anisotropic". */
 const char *symmetry_name(enum symmetry symmetry);
 /* symmetry_find - the reverse; STATUS_DOMAIN, *symmetry untouched, for another name. */
@@ -77,9 +83,16 @@ MUST_CHECK enum status measurement_scattered(struct measurement *measurement, si
 MUST_CHECK enum status measurement_require_table(const struct measurement *measurement, const char *what,
 						 struct error *why);
 enum { MEASUREMENT_LEFT_OUT = 160 };
-/* measurement_left_out - which samples of a file are not among those of a scattered measurement though they have values, "3
- * negative; 1 at or below the horizon"; of those out of gamut only if `masked`. "" of a table. Returns text. */
-const char *measurement_left_out(const struct measurement *measurement, bool masked, char text[MEASUREMENT_LEFT_OUT]);
+/* What of the entries that are not among those that count has to be told. */
+enum left_out {
+	LEFT_OUT_VALUES,   /* those of a file of samples that have values */
+	LEFT_OUT_ALL,      /* those that were not measured, too */
+	LEFT_OUT_OF_TABLE, /* all, and of a table those that are masked */
+};
+/* measurement_left_out - how many entries of the file are not among those of the measurement, and why, "3 negative; 1 at or below
+ * the horizon"; of those out of gamut only if `masked`. Returns text. */
+const char *measurement_left_out(const struct measurement *measurement, enum left_out which, bool masked,
+				 char text[MEASUREMENT_LEFT_OUT]);
 /* measurement_free - releases the planes and clears the struct; harmless on a zeroed one. */
 void measurement_free(struct measurement *measurement);
 

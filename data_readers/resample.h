@@ -36,7 +36,9 @@ MUST_CHECK enum status measurement_resample(const struct measurement *measuremen
 					    enum gaps gaps, int threads, struct measurement *table,
 					    struct resampled *result);
 
-/* measurement_fill - puts a table of 180 with filled gaps in the place of scattered entries; a table stays as it is. */
+/* measurement_fill - puts a table of 180 with filled gaps in the place of scattered entries; a table stays as it is.
+ * measurement_fill_isotropic - the same, but what turns (measurement_turns()) stays, too. */
 MUST_CHECK enum status measurement_fill(struct measurement *measurement, enum bins bins, int threads);
+MUST_CHECK enum status measurement_fill_isotropic(struct measurement *measurement, enum bins bins, int threads);
 
 #endif

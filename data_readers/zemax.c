@@ -119,6 +119,32 @@ static enum status take_word(struct grid *grid, const struct words *words, const
 	return STATUS_OK;
 }
 
+/* The angles that an axis spans at most, of a grid that is there once. */
+static void find_most(const struct grid *grid, double most[AXES])
+{
+	most[ROTATION] = 2 * M_PI;
+	most[INCIDENCE] = M_PI_2;
+	most[AZIMUTH] = grid->half ? M_PI : 2 * M_PI;
+	most[RADIAL] = M_PI;
+}
+
+/* Beyond that, cells would overlap. */
+static enum status check_axes(const struct line_reader *lines, const struct grid *grid, struct error *why)
+{
+	double most[AXES];
+	find_most(grid, most);
+	for (int a = 0; a < AXES; a++) {
+		const struct axis *axis = &grid->axis[a];
+		const bool turns = a == ROTATION || a == AZIMUTH;
+		const double first = axis->angle ? axis->angle[0] : 0,
+			     last = axis->angle ? axis->angle[axis->n - 1] : 0;
+		if (last - (turns ? fmin(0, first) : 0) > most[a] * (1 + 1e-9) || (!turns && first < 0))
+			return line_error(lines, why, "expected angles of %s %s %g degrees", axis_names[a],
+					  turns ? "that span at most" : "from 0 to", most[a] / RADIAN);
+	}
+	return STATUS_OK;
+}
+
 /* Up to the first DataBegin. */
 static enum status read_head(struct line_reader *lines, struct grid *grid, struct error *why)
 {
@@ -139,6 +165,9 @@ static enum status read_head(struct line_reader *lines, struct grid *grid, struc
 		if (status != STATUS_OK)
 			return status;
 	}
+	const enum status sound = check_axes(lines, grid, why);
+	if (sound != STATUS_OK)
+		return sound;
 	double n = 1;
 	for (int a = 0; a < AXES; a++) {
 		if (!grid->axis[a].n)
@@ -207,7 +236,8 @@ static enum status read_blocks(struct line_reader *lines, const struct grid *gri
 
 static void find_edges(struct grid *grid)
 {
-	const double most[AXES] = {2 * M_PI, M_PI_2, grid->half ? M_PI : 2 * M_PI, M_PI};
+	double most[AXES];
+	find_most(grid, most);
 	for (int a = 0; a < AXES; a++) {
 		struct axis *axis = &grid->axis[a];
 		if (!axis->angle)

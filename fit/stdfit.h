@@ -179,6 +179,58 @@ STDFIT_MUST_CHECK enum stdfit_status stdfit_model_albedo_max(const struct stdfit
 STDFIT_MUST_CHECK enum stdfit_status stdfit_fresnel(const char *fresnel, double cos_d, double n, double k, double *F,
 						    struct stdfit_error *error);
 
+/* ---- Rough dielectrics, and light that meets several facets ---- */
+
+/* A rough interface between two transparent media: `index` is that of the medium below over that of the medium above, in
+ * [1e-50, 1e50] but not 1. wi and wo may lie above or below; f_t = (1 - F) D G index^2 |wi.m wo.m|/(|cos_i cos_o| |wi + index
+ * wo|^2) for wi above [Walter et al. 2007]. f is a ratio of radiances: f(wi, wo)/n_o^2 = f(wo, wi)/n_i^2 with the indices on
+ * the sides of wi and wo. The NDF is one of stdfit_ndf_new() or an isotropic piecewise one; else STDFIT_UNSUPPORTED. gaf:
+ * "uncorrelated" (NULL) or "correlated", of transmissions Euler's B(1 + Lambda(wi), 1 + Lambda(-wo)). */
+
+/* stdfit_dielectric_evaluate - f of n pairs of directions, 1/sr, one channel: reflection on one side, transmission else. */
+STDFIT_MUST_CHECK enum stdfit_status stdfit_dielectric_evaluate(const stdfit_ndf *ndf, const char *gaf, double index,
+								size_t n, const double *wi, const double *wo, double *f,
+								struct stdfit_error *error);
+
+/* stdfit_dielectric_sample - where light from wi goes, wi not in the horizon: n directions wo from 3 n numbers u in [0, 1), and
+ * weight[n], f |cos_o| over the density of wo, 0 where wo is lost to further facets. Their mean is the light that is sent on.
+ * stdfit_dielectric_pdf - that density, 1/sr. sampling: of "visible" normals (NULL), or by "ndf", of all, which gtr, low and a
+ * piecewise one need. */
+STDFIT_MUST_CHECK enum stdfit_status stdfit_dielectric_sample(const stdfit_ndf *ndf, const char *gaf, double index,
+							      const char *sampling, const double wi[3], size_t n,
+							      const double *u, double *wo, double *weight,
+							      struct stdfit_error *error);
+STDFIT_MUST_CHECK enum stdfit_status stdfit_dielectric_pdf(const stdfit_ndf *ndf, double index, const char *sampling,
+							   const double wi[3], size_t n, const double *wo, double *pdf,
+							   struct stdfit_error *error);
+
+/* struct stdfit_facets - what facets do with light that is followed until it leaves: they reflect F of it, by index n and
+ * k of each channel, and absorb the rest; or, with transmits, refract it: a dielectric of index n[0] as above. fresnel and
+ * ranges as in struct stdfit_model; "dielectric" or NULL with transmits. */
+struct stdfit_facets {
+	const char *fresnel;
+	double n[3], k[3];
+	int transmits;
+};
+
+/* stdfit_facets_default - fresnel "none", a surface that loses nothing. */
+struct stdfit_facets stdfit_facets_default(void);
+
+/* stdfit_scatter_evaluate - estimates the BSDF of a Smith surface with light that meets several facets, by a random walk
+ * [Heitz et al. 2016], of n pairs into f[3 n], 1/sr. The mean over calls is the BSDF, whose first order is exact, with
+ * correlated G. events: at most so many facets; 0: all. The NDF is one of stdfit_ndf_new() but gtr and low; its Lambda is
+ * taken as exact. *random is the state of the random numbers: any to begin with, and it is moved on. For gamma <= 1.75 the
+ * variance is infinite.
+ * stdfit_scatter_sample - n directions wo in which light from wi leaves, weight[3 n] in three channels, 0 where it has been
+ * absorbed, whose mean is the light that comes back (and on), and the facets met in events[n], or NULL. wi.z > 0, or of
+ * facets that transmit other than 0. */
+STDFIT_MUST_CHECK enum stdfit_status stdfit_scatter_evaluate(const struct stdfit_facets *facets, const stdfit_ndf *ndf,
+							     int events, size_t n, const double *wi, const double *wo,
+							     uint64_t *random, double *f, struct stdfit_error *error);
+STDFIT_MUST_CHECK enum stdfit_status stdfit_scatter_sample(const struct stdfit_facets *facets, const stdfit_ndf *ndf,
+							   const double wi[3], size_t n, uint64_t *random, double *wo,
+							   double *weight, int *events, struct stdfit_error *error);
+
 /* ---- Half and difference angles ---- */
 
 /* stdfit_angles_to_directions - wi and wo of n triples theta_h, theta_d, phi_d, with h in the xz plane; z <= 0 where a

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# usage: setup.sh [lint | tsan | valgrind | compilers | fuzz | deb]
+# usage: setup.sh [note | lint | tsan | valgrind | compilers | fuzz | deb]
 # Installs what building and testing need, or what that target of make needs besides, with apt-get, if anything of it is
-# missing. Says nothing if nothing is.
+# missing. Says nothing if nothing is. `note` installs nothing, and says only what the program will do without.
 set -u
 
 target=${1:-}
@@ -12,7 +12,7 @@ packages='gcc make libc6-dev pkg-config libnlopt-dev libgsl-dev libxxhash-dev li
 optional='libpng-dev gnuplot-nox'
 tools=
 case $target in
-'') ;;
+'' | note) ;;
 lint)
 	tools='clang clang-tidy clang-format cppcheck shellcheck'
 	packages="$packages clang clang-tidy clang-format libomp-dev cppcheck shellcheck"
@@ -62,11 +62,12 @@ note_optional() {
 	without=
 	"${PKG_CONFIG:-pkg-config}" --exists libpng 2>/dev/null || without=' libpng-dev (pictures as PNG)'
 	command -v gnuplot >/dev/null 2>&1 || without="$without gnuplot-nox (plots)"
-	[ -z "$without" ] || [ -n "$target" ] || echo "setup: going on without$without" >&2
+	[ -z "$without" ] || echo "setup: going on without$without" >&2
 }
 
+[ "$target" != note ] || { note_optional; exit 0; }
 lacking=$(missing)
-[ -n "$lacking" ] || { note_optional; exit 0; }
+[ -n "$lacking" ] || { [ -n "$target" ] || note_optional; exit 0; }
 
 command -v apt-get >/dev/null 2>&1 || give_up "not found:$lacking; and there is no apt-get to install them with"
 if [ "$(id -u)" -eq 0 ]; then

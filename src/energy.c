@@ -3,6 +3,7 @@
  * incidence: d wo = 4 (wi.h) dh, and D, the only sharp factor, depends on v alone, with about the same width for all
  * sigma. wo lies above the horizon where sin_i sin(2 theta_h) cos(phi) + cos_i cos(2 theta_h) > 0. */
 #include "src/energy.h"
+#include "src/energy_axes.h"
 #include "src/quadrature.h"
 #include "src/smith_table.h"
 
@@ -125,21 +126,38 @@ struct surface {
 	const struct cook_torrance *model;
 	double median;
 	struct smith_table G1;
+	bool has_axes;
+	struct energy_axes axes; /* then, instead of G1 */
 };
+
+static bool has_axes(const struct cook_torrance *model)
+{
+	return model->ndf.sigma_x != model->ndf.sigma_y;
+}
 
 static enum status surface_init(struct surface *surface, const struct cook_torrance *model)
 {
-	if (model->ndf.sigma_x != model->ndf.sigma_y)
-		return STATUS_UNSUPPORTED;
 	surface->model = model;
+	surface->has_axes = has_axes(model);
+	if (surface->has_axes) {
+		const struct ndf *ndf = &model->ndf;
+		const double mean = sqrt(ndf->sigma_x * ndf->sigma_y);
+		/* At u1 = 0 the slope lies along x. */
+		surface->median = median_slope(ndf) * (mean / ndf->sigma_x);
+		return energy_axes_init(&surface->axes, model, surface->median);
+	}
 	surface->median = median_slope(&model->ndf);
 	smith_table_init(&surface->G1, &model->ndf, surface->median);
 	return STATUS_OK;
 }
 
+/* Of an anisotropic lobe the larger one of both axes' planes. */
 static double lobe_albedo(struct surface *surface, double cos_i, double tolerance)
 {
 	const double z = fmax(cos_i, GRAZING * fmin(surface->median, 1.0));
+	if (surface->has_axes)
+		return fmax(energy_axes_lobe(&surface->axes, 0, z, tolerance),
+			    energy_axes_lobe(&surface->axes, 1, z, tolerance));
 	struct ring ring = {.model = surface->model,
 			    .G1 = &surface->G1,
 			    .tolerance = tolerance,
@@ -153,6 +171,8 @@ enum status energy_lobe(const struct cook_torrance *model, double cos_i, double 
 	struct surface surface;
 	if (!(cos_i >= 0.0 && cos_i <= 1.0))
 		return STATUS_DOMAIN;
+	if (has_axes(model))
+		return STATUS_UNSUPPORTED;
 	const enum status status = surface_init(&surface, model);
 	if (status == STATUS_OK)
 		*albedo = lobe_albedo(&surface, cos_i, TOLERANCE);
@@ -245,6 +265,8 @@ enum status energy_furnace(const struct cook_torrance *model, double *balance)
 {
 	struct cook_torrance mirror = *model;
 	mirror.fresnel = FRESNEL_NONE;
+	if (has_axes(model))
+		return STATUS_UNSUPPORTED;
 	struct surface surface;
 	const enum status status = surface_init(&surface, &mirror);
 	if (status == STATUS_OK)

@@ -22,11 +22,12 @@ MUST_CHECK enum status energy_albedo(const struct cook_torrance *model, double c
 
 /* energy_albedo_max - the largest directional albedo of the whole model over all directions of incidence, c = red, green,
  * blue. More than 1 is more light than comes in, which no surface sends back.
- * Given:   as energy_lobe(); ks >= 0
+ * Given:   as energy_lobe(), but that it may be anisotropic; ks >= 0
  * Returns: STATUS_OK; albedo[], absolute error 1e-5 for kd, ks up to 1; *theta_i, radians in [0, pi/2], where that is:
- *          one direction for all channels, as their lobes are alike. STATUS_UNSUPPORTED as above.
- * Note:    evaluates about thirty directions and refines around the largest: 5 to 20 ms for STD, GGX and Beckmann; sharp
- *          lobes of gtr and low ten times as much. */
+ *          one direction for all channels, as their lobes are alike. Of an anisotropic lobe, the larger one of both axes'
+ *          planes: between them it is not larger. STATUS_UNSUPPORTED for such a lobe with GAF_V_GROOVE.
+ * Note:    evaluates about thirty directions and refines around the largest: 5 to 20 ms for STD, GGX and Beckmann, 60 ms
+ *          for anisotropic ones; sharp lobes of gtr and low ten times as much. */
 MUST_CHECK enum status energy_albedo_max(const struct cook_torrance *model, double albedo[3], double *theta_i);
 
 /* energy_furnace - the white-furnace balance (eq. 24, over pi, which makes it 1 for a lossless surface) of a model's

@@ -137,8 +137,13 @@ bool ndf_plain(const struct ndf *ndf, struct ndf *plain)
 	const bool ggx = ndf->gamma == 2.0 && ndf->class->ggx_at_2;
 	if ((!ggx && !isinf(ndf->gamma)) || ndf->lambda_form == LAMBDA_RATIONAL)
 		return false;
-	const double sigma = ndf->sigma_x / ndf->stretch;
-	return ndf_init(plain, ggx ? &ndf_class_ggx : &ndf_class_beckmann, sigma, sigma, NAN) == STATUS_OK;
+	const struct ndf_class *class = ggx ? &ndf_class_ggx : &ndf_class_beckmann;
+	if (ndf_init(plain, class, ndf->sigma_x / ndf->stretch, ndf->sigma_y / ndf->stretch, NAN) != STATUS_OK)
+		return false;
+	plain->angle = ndf->angle;
+	plain->turn_cos = ndf->turn_cos;
+	plain->turn_sin = ndf->turn_sin;
+	return true;
 }
 
 enum status ndf_turn(struct ndf *ndf, double degrees)

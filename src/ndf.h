@@ -120,7 +120,7 @@ void ndf_from_pwl(struct ndf *ndf, const struct pwl *pwl);
  */
 MUST_CHECK enum status ndf_set_lambda_form(struct ndf *ndf, enum lambda_form form);
 
-/* ndf_plain - GGX or Beckmann, into *plain, where an isotropic distribution is one of them under another name: the same D
+/* ndf_plain - GGX or Beckmann, into *plain, where a distribution is one of them under another name: the same D
  * and Lambda to rounding. Returns: false, *plain untouched, where it is neither, or has the rational form of Lambda. */
 bool ndf_plain(const struct ndf *ndf, struct ndf *plain);
 

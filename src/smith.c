@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "src/smith.h"
 #include "src/names.h"
+#include <gsl/gsl_sf_gamma.h>
 
 static const char *const names[GAF_COUNT] = {"uncorrelated", "correlated", "v-groove"};
 
@@ -31,6 +32,15 @@ double gaf_smith(enum gaf gaf, double lambda_i, double lambda_o)
 	if (gaf == GAF_UNCORRELATED)
 		return 1.0 / (1.0 + lambda_i) * (1.0 / (1.0 + lambda_o));
 	return gaf == GAF_CORRELATED ? 1.0 / (1.0 + lambda_i + lambda_o) : NAN;
+}
+
+double gaf_smith_through(enum gaf gaf, double lambda_i, double lambda_o)
+{
+	if (gaf != GAF_CORRELATED)
+		return gaf_smith(gaf, lambda_i, lambda_o);
+	if (isnan(lambda_i) || isnan(lambda_o))
+		return NAN;
+	return fmax(lambda_i, lambda_o) < 1e100 ? exp(gsl_sf_lnbeta(1.0 + lambda_i, 1.0 + lambda_o)) : 0.0;
 }
 
 double gaf_G_over_cosines(enum gaf gaf, const struct ndf *ndf, struct vec3 wi, struct vec3 wo)

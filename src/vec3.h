@@ -35,6 +35,17 @@ static inline struct vec3 vec3_scale(struct vec3 a, double s)
 	return scaled;
 }
 
+static inline struct vec3 vec3_opposite(struct vec3 a)
+{
+	return vec3_scale(a, -1.0);
+}
+
+/* w mirrored at the axis m, a unit vector: where a facet with normal m reflects what comes from w. */
+static inline struct vec3 vec3_reflect(struct vec3 w, struct vec3 m)
+{
+	return vec3_sub(vec3_scale(m, 2.0 * vec3_dot(w, m)), w);
+}
+
 /* Neither over- nor underflows before the length itself does. */
 static inline double vec3_length(struct vec3 a)
 {

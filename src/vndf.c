@@ -59,14 +59,17 @@ static double t3_quantile_fit(double u)
 }
 
 /* With x = tan(psi) the CDF of x is (sin(theta + psi) + cos_i)/(1 + cos_i). So sin(theta + psi) is k = u1 (1 + cos_i) -
- * cos_i, its cosine r, and sine and cosine of psi follow by subtracting theta, each written without cancellation. */
+ * cos_i, its cosine r, and sine and cosine of psi follow by subtracting theta, each written without cancellation; also
+ * for theta beyond the horizon. */
 static struct scaled_slopes ggx_slopes(double cos_i, double sin_i, double u1, double u2, enum vndf_ggx how)
 {
-	const double k_plus_cos = u1 * (1.0 + cos_i);
+	const double one_plus_cos = cos_i < 0.0 ? sin_i * sin_i / (1.0 - cos_i) : 1.0 + cos_i;
+	const double k_plus_cos = u1 * one_plus_cos;
 	const double k = k_plus_cos - cos_i;
-	const double r = sqrt((1.0 - u1) * (sin_i * sin_i + k_plus_cos * (1.0 + cos_i)));
-	const double sin_psi = k > 0.0 ? (k - sin_i) * (k + sin_i) / (k * cos_i + r * sin_i) : k * cos_i - r * sin_i;
-	const double cos_psi = k > 0.0 ? r * cos_i + k * sin_i : k_plus_cos * (cos_i - k) / (r * cos_i - k * sin_i);
+	const double r = sqrt((1.0 - u1) * (sin_i * sin_i + k_plus_cos * one_plus_cos));
+	const bool alike = k > 0.0 && cos_i >= 0.0;
+	const double sin_psi = alike ? (k - sin_i) * (k + sin_i) / (k * cos_i + r * sin_i) : k * cos_i - r * sin_i;
+	const double cos_psi = alike ? r * cos_i + k * sin_i : k_plus_cos * (cos_i - k) / (r * cos_i - k * sin_i);
 	const double z = how == VNDF_GGX_FIT ? t3_quantile_fit(u2) : t3_quantile(u2);
 	return (struct scaled_slopes){sin_psi, z, cos_psi};
 }
@@ -100,13 +103,13 @@ static struct scaled_slopes beckmann_slopes(double cos_i, double sin_i, double u
 
 /* With X = x/sqrt(gamma-1) the slope along wi has density K (1 + X^2)^(1/2-gamma), and y/sqrt(gamma-1+x^2) has
  * Gamma(gamma)/(sqrt(pi) Gamma(gamma-1/2)) (1 + z^2)^-gamma whatever x is. */
-static struct scaled_slopes std_slopes(const struct ndf *ndf, double cos_i, double sin_i, double u1, double u2)
+static struct scaled_slopes std_slopes(double gamma, double K, double cos_i, double sin_i, double u1, double u2)
 {
-	const double a = ndf->gamma - 1.0;
+	const double a = gamma - 1.0;
 	const double scale = sqrt(a);
 	/* Along the normal all facets are seen alike. */
-	const struct student along = {ndf->gamma - 0.5, ndf->K, cos_i, sin_i > 1e-160 ? scale * sin_i : 0.0};
-	const struct student across = {ndf->gamma, a * M_1_PI / ndf->K, 1.0, 0.0};
+	const struct student along = {gamma - 0.5, K, cos_i, sin_i > 1e-160 ? scale * sin_i : 0.0};
+	const struct student across = {gamma, a * M_1_PI / K, 1.0, 0.0};
 	const double w = student_quantile(&along, u1);
 	const double v = student_quantile(&across, u2);
 	return (struct scaled_slopes){scale * copysign(sqrt(-expm1(-w * w)), w),
@@ -133,22 +136,28 @@ bool vndf_supports(const struct ndf *ndf)
 	return ndf->class->student_t || ndf->class == &ndf_class_ggx || ndf->class == &ndf_class_beckmann;
 }
 
-/* Student-t slopes at gamma = 2 are those of GGX, and where they have no K they are Beckmann's. */
+/* All but Beckmann: what differs is of the order 1/gamma. */
+#define GAMMA_BECKMANN 1e16
+
+/* Student-t slopes at gamma = 2 are those of GGX, and where they have no K they are Beckmann's. From below the horizon the
+ * latter are a difference of two terms: the solver has that. */
 static struct scaled_slopes sample_slopes(const struct ndf *ndf, double cos_i, double sin_i, double u1, double u2)
 {
 	if (ndf->gamma == 2.0)
 		return ggx_slopes(cos_i, sin_i, u1, u2, VNDF_GGX_EXACT);
-	if (ndf->K == 0.0)
-		return beckmann_slopes(cos_i, sin_i, u1, u2);
-	return std_slopes(ndf, cos_i, sin_i, u1, u2);
+	if (ndf->K > 0.0)
+		return std_slopes(ndf->gamma, ndf->K, cos_i, sin_i, u1, u2);
+	if (cos_i < 0.0)
+		return std_slopes(GAMMA_BECKMANN, sqrt(GAMMA_BECKMANN * M_1_PI), cos_i, sin_i, u1, u2);
+	return beckmann_slopes(cos_i, sin_i, u1, u2);
 }
 
-struct vec3 vndf_sample(const struct ndf *ndf, struct vec3 wi, double u1, double u2)
+struct vec3 vndf_sample_inside(const struct ndf *ndf, struct vec3 wi, double u1, double u2)
 {
-	if (!vndf_supports(ndf) || isnan(wi.x + wi.y + wi.z))
+	if (!vndf_supports(ndf) || isnan(wi.x + wi.y + wi.z) || (wi.z < 0.0 && !(vndf_area(ndf, wi) > 0.0)))
 		return (struct vec3){NAN, NAN, NAN};
 	wi = ndf_to_axes(ndf, wi);
-	wi.z = wi.z < NDF_COS_MIN ? NDF_COS_MIN : wi.z;
+	wi.z = fabs(wi.z) < NDF_COS_MIN ? NDF_COS_MIN : wi.z;
 	const double sigma_x = ndf->sigma_x / ndf->stretch, sigma_y = ndf->sigma_y / ndf->stretch; /* of std */
 	const double x = sigma_x * wi.x, y = sigma_y * wi.y;
 	const double r = sqrt(x * x + y * y);
@@ -157,10 +166,33 @@ struct vec3 vndf_sample(const struct ndf *ndf, struct vec3 wi, double u1, double
 	const struct scaled_slopes s = sample_slopes(ndf, wi.z / length, r / length, inside(u1), inside(u2));
 	struct vec3 m = vec3_unit((struct vec3){-sigma_x * (cos_phi * s.x - sin_phi * s.y),
 						-sigma_y * (sin_phi * s.x + cos_phi * s.y), s.one});
-	m.z = m.z < NDF_COS_MIN ? NDF_COS_MIN : m.z;
+	m.z = ndf_cos(m);
 	/* The rounding of m can turn the very last bit of wi.m. */
 	const double cos_d = vec3_dot(wi, m);
-	return ndf_from_axes(ndf, cos_d < 0.0 ? vec3_sub(m, vec3_scale(wi, 2.0 * cos_d)) : m);
+	if (cos_d < 0.0)
+		m = vec3_sub(m, vec3_scale(wi, 2.0 * cos_d));
+	m.z = ndf_cos(m);
+	return ndf_from_axes(ndf, m);
+}
+
+struct vec3 vndf_sample(const struct ndf *ndf, struct vec3 wi, double u1, double u2)
+{
+	wi.z = wi.z < 0.0 ? 0.0 : wi.z;
+	return vndf_sample_inside(ndf, wi, u1, u2);
+}
+
+double vndf_area(const struct ndf *ndf, struct vec3 wi)
+{
+	if (wi.z <= -NDF_COS_MIN)
+		return -wi.z * ndf_lambda(ndf, vec3_opposite(wi));
+	const struct vec3 up = {wi.x, wi.y, ndf_cos(wi)};
+	return up.z * (1.0 + ndf_lambda(ndf, up));
+}
+
+double vndf_pdf_inside(const struct ndf *ndf, struct vec3 wi, struct vec3 m)
+{
+	const double cos_d = vec3_dot(wi, m);
+	return cos_d <= 0.0 ? 0.0 : cos_d * ndf_D(ndf, m) / vndf_area(ndf, wi);
 }
 
 double vndf_pdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m)

@@ -31,6 +31,20 @@ struct vec3 vndf_sample(const struct ndf *ndf, struct vec3 wi, double u1, double
  * below the horizon. Relative error that of D and G1, plus 2^-52 / (wi.m). */
 double vndf_pdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m);
 
+/* vndf_sample_inside, vndf_pdf_inside - the same from a direction within the surface, which may point below the horizon:
+ * light that rises between the facets meets those that lean over it. There
+ *     D_wi(m) = max(0, wi.m) D(m) / vndf_area(wi)                                 [Heitz et al. 2016]
+ * Given:   wi.z of any sign, else as above; for wi.z >= 0 the samples are those of vndf_sample(), to the bit
+ * Returns: as above, but with wi.m > 0 wherever wi.z < 0 has facets to face; NaN where vndf_area() is 0. The CDF of the slope
+ *          along wi is within 1e-13 (1 + 1/Lambda(-wi)) for wi.z < 0. */
+struct vec3 vndf_sample_inside(const struct ndf *ndf, struct vec3 wi, double u1, double u2);
+double vndf_pdf_inside(const struct ndf *ndf, struct vec3 wi, struct vec3 m);
+
+/* vndf_area - area of the facets that face wi, as wi sees it without those that mask them, per macroscopic area: the integral
+ * of max(0, wi.m) D(m) dm. wi.z (1 + Lambda(wi)) above the horizon, |wi.z| Lambda(-wi) below, in it the common limit, from
+ * |wi.z| = 1e-100 on. */
+double vndf_area(const struct ndf *ndf, struct vec3 wi);
+
 /* The two slopes at unit roughness. */
 struct vndf_slopes {
 	double x, y;

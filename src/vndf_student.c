@@ -84,6 +84,7 @@ struct side {
 	double excess;    /* 0 for X < 0; else int over X > c/s of (s X - c) k (1 + X^2)^-p dX */
 	double slope_max; /* X at which the weight ends; infinite for X < 0 */
 	double t_max;     /* and its t */
+	double t_min;     /* where the weight begins: 0 but for c < 0 */
 	double target;    /* mass to be left beyond t, not normalised */
 };
 
@@ -126,7 +127,7 @@ static double side_step(const struct side *side, double t, double *error)
 static double side_solve(const struct side *side, double t)
 {
 	const double done = 1e-5 / sqrt(side->student->p);
-	double low = 0.0, high = side->t_max;
+	double low = side->t_min, high = side->t_max;
 	for (int i = 0; i < 100; i++) {
 		double error;
 		const double step = side_step(side, t, &error);
@@ -157,7 +158,7 @@ static double plain_guess(const struct student *student, double m)
 
 static double left_quantile(const struct student *student, double target, double moment)
 {
-	const struct side side = {student, 1.0, 0.0, INFINITY, INFINITY, target};
+	const struct side side = {student, 1.0, 0.0, INFINITY, INFINITY, 0.0, target};
 	/* Either part of the mass alone gives a lower bound. */
 	const double by_tail = plain_guess(student, target / student->c);
 	const double by_moment = target < moment ? sqrt(log(moment / target) / (student->p - 1.0)) : 0.0;
@@ -170,12 +171,37 @@ static double right_quantile(const struct student *student, struct side *side, d
 	return side_solve(side, fmin(by_end, plain_guess(student, side->target / student->c)));
 }
 
+static double t_of_slope(double slope)
+{
+	return slope < 1e150 ? sqrt(log1p(slope * slope)) : sqrt(2.0 * log(slope));
+}
+
+/* c < 0: only X < c/s is seen. */
+static double quantile_below(const struct student *student, double u)
+{
+	const double t_min = t_of_slope(-student->c / student->s);
+	struct side side = {student, 1.0, 0.0, INFINITY, INFINITY, t_min, 0.0};
+	const struct point end = point_at(student->p, t_min);
+	const double total = side_mass(&side, &end);
+	if (!(total > 0.0))
+		return t_min;
+	side.target = u * total;
+	/* Lower bounds: all of the tail falls as the moment; the density begins as a straight line. */
+	const double by_moment = sqrt(t_min * t_min - log(u) / (student->p - 1.0));
+	const double t_over_y = t_min / end.root_y;
+	const double by_line =
+		t_min + sqrt(2.0 * (1.0 - u) * total / (student->k * student->s * t_over_y * t_over_y * end.power));
+	return side_solve(&side, fmax(by_moment, by_line));
+}
+
 double student_quantile(const struct student *student, double u)
 {
+	if (student->c < 0.0)
+		return -quantile_below(student, u);
 	const double p = student->p;
 	const double slope_max = student->s > 0.0 ? student->c / student->s : INFINITY;
-	const double t_max = slope_max < 1e150 ? sqrt(log1p(slope_max * slope_max)) : sqrt(2.0 * log(slope_max));
-	struct side right = {student, -1.0, 0.0, slope_max, t_max, 0.0};
+	const double t_max = t_of_slope(slope_max);
+	struct side right = {student, -1.0, 0.0, slope_max, t_max, 0.0, 0.0};
 	double moment = 0.0;
 	if (student->s > 0.0) {
 		const struct point end = point_at(p, t_max);

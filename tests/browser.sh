@@ -3,6 +3,7 @@
 # usage: browser.sh PAGE.html
 # Opens the page of a report in headless Chromium, through chromedriver, clicks and looks. Ends with 0: all is as it
 # should be; 1: it is not, with what is wrong on standard error; 77: no browser, no driver or no curl is installed.
+# Where axe-core and html-validate are installed (`make page-tools`, or npm's global packages), they must find nothing.
 set -eu
 
 [ $# -eq 1 ] || { echo 'usage: browser.sh PAGE.html' >&2; exit 2; }
@@ -79,6 +80,32 @@ start() {
 	session=http://127.0.0.1:$port/session/$id
 }
 
+# modules NAME: where npm has put the package.
+modules() {
+	for root in "$(dirname "${STDFIT:-build/stdfit}")/npm/node_modules" "$(npm root -g 2>/dev/null || :)"; do
+		[ ! -e "$root/$1/package.json" ] || { echo "$root/$1"; return; }
+	done
+}
+
+# axe WHAT: runs axe-core over the page as it is.
+axe() {
+	[ -n "$axe" ] || return 0
+	answer=$(curl -sS -m 60 -H 'Content-Type: application/json' -d "@$work/axe.json" "$session/execute/async")
+	[ "$answer" = '{"value":[]}' ] || fail "axe, $1: $(printf '%s' "$answer" | head -c 600)"
+}
+
+axe=$(modules axe-core)
+[ -z "$axe" ] || node -e 'const source = require("fs").readFileSync(process.argv[1], "utf8");
+	console.log(JSON.stringify({args: [], script: source + ";const done=arguments[0];axe.run().then(r=>done(r.violations" +
+	".map(v=>v.id+\": \"+v.nodes.length+\" \"+v.nodes[0].html.slice(0,200))))"}))' "$axe/axe.min.js" >"$work/axe.json"
+validate=$(modules html-validate)
+if [ -n "$validate" ]; then
+	echo '{"root": true, "extends": ["html-validate:recommended"]}' >"$work/rules.json"
+	sed 's/base64,[A-Za-z0-9+/=]*/base64,AA==/g' "$page" >"$work/page.html"
+	node "$validate/bin/html-validate.mjs" --config "$work/rules.json" "$work/page.html" >"$work/found" 2>&1 ||
+		fail "html-validate: $(head -c 900 "$work/found")"
+fi
+
 start
 post url "{\"url\":\"file://$page\"}" >/dev/null
 
@@ -124,6 +151,18 @@ for _ in 1 2 3 4 5 6 7 8 9 10; do
 done
 check 'all pictures are there' "const bad=[...document.images].filter(i=>!i.complete||!i.naturalWidth||!i.alt\
 ||!i.src.startsWith('data:image/'));return bad.length?bad.length+' are not, or have no text':''"
+check 'spheres are as wide as the column, and of 256 pixels at least' "\
+const all=[...document.querySelectorAll('.spheres')];\
+const bad=all.find(e=>{const rows=[...e.children].filter(i=>i.offsetTop===e.children[0].offsetTop);\
+const width=rows.reduce((sum,i)=>sum+i.clientWidth,0);\
+return [...e.children].some(i=>i.clientWidth<250)||width<0.97*e.parentElement.clientWidth});\
+return bad?bad.clientWidth+': '+[...bad.children].map(i=>i.clientWidth).join():''"
+check 'a button copies the parameters' "window.copied='';\
+Object.defineProperty(navigator,'clipboard',{value:{writeText:async t=>{window.copied=t}},configurable:true});\
+return document.querySelector('tr[data-options] button.copy')?'':'there is none'"
+click 'details.material tr[data-options] button.copy'
+check 'a button copies the parameters' "const t=document.querySelector('tr[data-options]').dataset.options;\
+return window.copied===t&&t.startsWith('--ndf ')?'':window.copied"
 check 'headers head their tables' "const bad=[...document.querySelectorAll('table')].filter(t=>!t.tHead\
 ||[...t.tHead.rows[0].cells].some(c=>c.tagName!=='TH'||c.scope!=='col')\
 ||[...t.tBodies[0].rows].some(r=>r.cells.length!==t.tHead.rows[0].cells.length||r.cells[0].scope!=='row'));\
@@ -140,6 +179,7 @@ return (Math.max(a,b)+0.05)/(Math.min(a,b)+0.05)};\
 const low=[...document.querySelectorAll('p,th,td,a,button,summary,span,dt,dd,figcaption')].filter(e=>ratio(e)<4.5);"
 for theme in light dark; do
 	emulate setEmulatedMedia "{\"features\":[{\"name\":\"prefers-color-scheme\",\"value\":\"$theme\"}]}"
+	axe "in $theme colours"
 	check "text can be read in $theme colours" "${contrast}\
 const paper=light(behind(document.body));if(low.length)return low[0].tagName+' '+ratio(low[0]);\
 return ('$theme'==='dark')===(paper<0.1)?'':'the paper has '+paper"
@@ -149,9 +189,12 @@ return !i||getComputedStyle(i).filter.startsWith('invert')?'':getComputedStyle(i
 
 for width in 360 320; do
 	emulate setDeviceMetricsOverride "{\"width\":$width,\"height\":740,\"deviceScaleFactor\":2,\"mobile\":true}"
+	axe "at $width pixels"
+	check "pictures shrink to $width pixels" "const bad=[...document.images].filter(i=>i.clientWidth>$width);\
+return bad.length?bad.length+' do not':''"
 	check "nothing sticks out of $width pixels" "const w=document.documentElement.scrollWidth;\
 if(innerWidth!==$width||w>$width)return innerWidth+': '+w;\
-const out=[...document.querySelectorAll('body *')].filter(e=>!e.closest('.wide table,.pan img')&&\
+const out=[...document.querySelectorAll('body *')].filter(e=>!e.closest('.wide table')&&\
 e.getBoundingClientRect().right>$width+1);return out.length?out[0].outerHTML.slice(0,200):''"
 done
 

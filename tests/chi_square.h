@@ -4,15 +4,12 @@
 #define CHI_SQUARE_H
 
 #include "check.h"
+#include "src/splitmix.h"
 #include <gsl/gsl_cdf.h>
 
-/* The next number of a sequence in [0, 1), multiples of 2^-53 (splitmix64). */
 static inline double uniform(uint64_t *state)
 {
-	uint64_t z = *state += 0x9e3779b97f4a7c15u;
-	z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-	z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-	return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+	return splitmix_uniform(state);
 }
 
 /* The pairs of numbers with which a sampler has to cope. */

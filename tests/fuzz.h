@@ -24,6 +24,8 @@ int fuzz_cornell(const uint8_t *data, size_t size);      /* Cornell texts */
 int fuzz_zemax(const uint8_t *data, size_t size);        /* Zemax texts */
 int fuzz_model(const uint8_t *data, size_t size);        /* models as JSON */
 int fuzz_image(const uint8_t *data, size_t size);        /* pictures: HDR, PFM */
+int fuzz_ndf(const uint8_t *data, size_t size);          /* ndf -: distributions on standard input */
+int fuzz_merge(const uint8_t *data, size_t size);        /* merge of two result tables */
 int fuzz_command_line(const uint8_t *data, size_t size); /* arguments */
 
 #define PROMISE(kept) ((kept) ? (void)0 : fuzz_broken(__FILE__, __LINE__, #kept))

@@ -18,7 +18,7 @@ static int cut(char *text, size_t size, char **argv)
 /* What goes to the column `options` of a result: one line of plain text. */
 static void check_text(const struct options *options)
 {
-	char *text = options_text(options);
+	char *text = options_text(options, options->fit.criterion.weight);
 	PROMISE(text != NULL);
 	for (const char *c = text; *c; c++)
 		PROMISE(*c >= ' ' && *c <= '~' && *c != '"');

@@ -7,7 +7,7 @@
 #include "fit/commands/commands.h"
 #include "fit/results/result.h"
 #include "fit/results/store.h"
-#include "fuzz.h"
+#include "fuzz_rows.h"
 #include "json_check.h"
 
 #include <sys/stat.h>
@@ -22,84 +22,14 @@ static void clean_up(void)
 	rmdir(directory);
 }
 
-/* In memory where that is to be had: resuming syncs what it writes. */
 static void make_directory(void)
 {
 	if (directory[0])
 		return;
-	snprintf(directory, sizeof directory, "%s/stdfit-fuzz-XXXXXX", access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm");
-	if (!mkdtemp(directory))
-		abort();
+	fuzz_make_directory(directory);
 	snprintf(table_path, sizeof table_path, "%s/x.csv", directory);
 	snprintf(back_path, sizeof back_path, "%s/x.csv~", directory);
 	atexit(clean_up);
-}
-
-static void write_file(const void *bytes, size_t size)
-{
-	FILE *file = fopen(table_path, "wb");
-	if (!file || fwrite(bytes, 1, size, file) != size || fclose(file))
-		abort();
-}
-
-/* Writes a table of sound rows with the changes that `text` describes. */
-static void write_rows(char *text)
-{
-	static char empty[] = "";
-	char *cell[RESULT_COLUMNS];
-	FILE *file = fopen(table_path, "wb");
-	if (!file)
-		abort();
-	csv_write_header(file, result_columns, RESULT_COLUMNS);
-	for (char *line = text, *next; line; line = next) {
-		static const char *const sound[RESULT_COLUMNS] = {[RESULT_MATERIAL] = "a",
-								  [RESULT_NDF] = "ggx",
-								  [RESULT_ERROR] = "0.25",
-								  [RESULT_KD_R] = "0.5",
-								  [RESULT_KS_G] = "0.5",
-								  [RESULT_SIGMA] = "0.125",
-								  [RESULT_GAMMA] = "2",
-								  [RESULT_IOR] = "1.5",
-								  [RESULT_GAF] = "uncorrelated",
-								  [RESULT_LAMBDA] = "exact",
-								  [RESULT_FRESNEL] = "dielectric",
-								  [RESULT_WEIGHT] = "none",
-								  [RESULT_BINS] = "node",
-								  [RESULT_MAX_THETA] = "90",
-								  [RESULT_STATUS] = "converged",
-								  [RESULT_PATH] = "a.binary",
-								  [RESULT_INPUT] = "1:0",
-								  [RESULT_OPTIONS] = "o=1",
-								  [RESULT_VERSION] = STDFIT_VERSION};
-		for (int c = 0; c < RESULT_COLUMNS; c++)
-			cell[c] = sound[c] ? (char *)sound[c] : empty; /* only read */
-		do {
-			next = strchr(line, '\n');
-			if (next)
-				*next++ = '\0';
-			if (!*line)
-				break;
-			cell[(uint8_t)*line % RESULT_COLUMNS] = line + 1;
-			line = next;
-		} while (next);
-		csv_write_row(file, cell, RESULT_COLUMNS);
-	}
-	if (fclose(file))
-		abort();
-}
-
-static void write_input(const uint8_t *data, size_t size)
-{
-	if (data[0] < 128) {
-		write_file(data + 1, size - 1);
-		return;
-	}
-	char *text = calloc(size, 1);
-	if (!text)
-		abort();
-	memcpy(text, data + 1, size - 1);
-	write_rows(text);
-	free(text);
 }
 
 static void check_message(enum status status, const struct error *error)
@@ -157,7 +87,7 @@ static void check_written(const struct csv_table *rows)
 	char *json = as_text(report_json, rows), *csv = as_text(csv_write, rows);
 	struct error error;
 	PROMISE(json_is_valid(json));
-	write_file(csv, strlen(csv));
+	fuzz_write_file(table_path, csv, strlen(csv));
 	PROMISE(csv_table_read(&back, table_path, RESULT_COLUMNS, NULL, &error) == STATUS_OK);
 	check_same(&back, rows);
 	csv_table_free(&back);
@@ -231,7 +161,7 @@ static void rewrite(struct store *store)
 		const struct result_source source = {
 			.path = row[RESULT_PATH], .input = "another", .options = row[RESULT_OPTIONS]};
 		PROMISE(!store_has(store, &source, NULL) || !strcmp(row[RESULT_INPUT], "another"));
-		store_drop_stale(store, &source);
+		store_drop_stale(store, &source, 1);
 	}
 	for (size_t i = 0; i < store->old.n_rows; i++)
 		kept += !store->stale[i];
@@ -266,7 +196,7 @@ int fuzz_table(const uint8_t *data, size_t size)
 	if (size == 0)
 		return 0;
 	make_directory();
-	write_input(data, size);
+	fuzz_write_table(table_path, data, size);
 	const int what = data[0] % 128 % 6;
 	switch (what) {
 	case 0:

@@ -716,6 +716,8 @@ static inline void glsl_parse_function(struct glsl *g)
 		glsl_fail(g, "no type");
 	glsl_next(g);
 	glsl_word(g, function->name);
+	for (int i = 0; i < g->n_functions; i++)
+		assert_string_not_equal(function->name, g->function[i].name);
 	glsl_expect(g, "(");
 	while (!glsl_take(g, ")")) {
 		struct glsl_variable *parameter = &function->parameter[function->n_parameters++];

@@ -8,10 +8,12 @@
 #include "fit/error/objective.h"
 #include "high_precision.h"
 #include "src/cook_torrance.h"
+#include "src/dielectric.h"
 #include "src/ellipsoid.h"
 #include "src/energy.h"
 #include "src/ndf_slopes.h"
 #include "src/pwl.h"
+#include "src/random_walk.h"
 #include "src/vndf.h"
 #include <fenv.h>
 #include <signal.h>
@@ -428,6 +430,123 @@ static void sweep_visible(const struct subject *s)
 	}
 }
 
+/* Visible normals from below the horizon. Where hardly any facet faces wi, no more is known of the sample than that it is
+ * one. */
+static void sweep_inside(const struct subject *s)
+{
+	struct row *area_row = row_of("area from below", s->name), *row = row_of("sample from below", s->name);
+	for (int i = 0; i < EXTREME_DIRECTIONS && vndf_supports(&s->ndf); i += 2) {
+		const struct vec3 wi = {s->w[i].x, 0.0, -s->w[i].z};
+		double area;
+		int flags;
+		if (!(wi.z < -1e-90))
+			continue;
+		set_case("sigma %g gamma %.17g wi (%g, 0, %g)", s->ndf.sigma_x, s->ndf.gamma, wi.x, wi.z);
+		OBSERVE(area, flags, vndf_area(&s->ndf, wi));
+		check(area_row, area, flags,
+		      (struct expected){0.0, INFINITY, false, -(long double)wi.z * s->lambda[i], 1e-12});
+		for (int j = i % 4; j < COUNT(uniform) * COUNT(uniform) && area > 1e-280; j += 4) {
+			const double u1 = uniform[j % COUNT(uniform)], u2 = uniform[j / COUNT(uniform)];
+			struct vec3 m;
+			set_case("sigma %g gamma %.17g wi (%g, 0, %g) u %g %g", s->ndf.sigma_x, s->ndf.gamma, wi.x,
+				 wi.z, u1, u2);
+			OBSERVE(m, flags, vndf_sample_inside(&s->ndf, wi, u1, u2));
+			check(row, m.z, flags, (struct expected){DBL_MIN, 1.0, false, NAN, 1.0});
+			check(row, vec3_length(m), 0,
+			      (struct expected){1.0 - 4.0 * eps, 1.0 + 4.0 * eps, false, NAN, 1.0});
+			check(row, vec3_dot(wi, m), 0, (struct expected){-eps, 1.0 + 4.0 * eps, false, NAN, 1.0});
+		}
+	}
+}
+
+/* The next of a fixed sequence of numbers, with the ends of the range among them. */
+static double next_number(void *state)
+{
+	int *i = state;
+	const double u = fmod(0.5 + 0.6180339887498949 * ++*i, 1.0);
+	return *i % 16 ? u : uniform[*i / 16 % COUNT(uniform)];
+}
+
+/* Rough dielectrics, and walks between the facets: nothing but directions and weights of their range comes out. */
+static void sweep_transmission(const struct subject *s)
+{
+	static const double indices[] = {1e-50, 0.3, 1.0 - 1e-9, 1.5, 1e9};
+	struct row *f_row = row_of("dielectric f", s->name), *row = row_of("dielectric sample", s->name);
+	const enum sampling sampling = vndf_supports(&s->ndf) ? SAMPLING_VISIBLE : SAMPLING_NDF;
+	for (int i = 0; i < EXTREME_DIRECTIONS; i += s->quadrature ? 6 : 3) {
+		const struct vec3 wi = i % 2 ? s->w[i] : vec3_opposite(s->w[i]);
+		struct dielectric dielectric;
+		int flags;
+		if (!(s->w[i].z > 1e-90) || dielectric_init(&dielectric, &s->ndf, (enum gaf)(i % 2),
+							    indices[i / 3 % COUNT(indices)]) != STATUS_OK)
+			continue;
+		trapping = FE_INVALID;
+		for (int j = 0; j < EXTREME_DIRECTIONS; j++) {
+			const struct vec3 across = turned(s->w[j], j % 2 ? M_PI : 0.7);
+			const struct vec3 wo = j % 3 ? vec3_opposite(across) : across;
+			double f;
+			set_case("sigma %g gamma %.17g n %g wi (%g, 0, %g) wo (%g, %g, %g)", s->ndf.sigma_x,
+				 s->ndf.gamma, dielectric.side[0].n, wi.x, wi.z, wo.x, wo.y, wo.z);
+			OBSERVE(f, flags, dielectric_f(&dielectric, wi, wo));
+			check(f_row, f, flags & trapping, (struct expected){0.0, INFINITY, true, NAN, 1.0});
+			OBSERVE(f, flags, dielectric_pdf(&dielectric, sampling, wi, wo));
+			check(f_row, f, flags & trapping, (struct expected){0.0, INFINITY, true, NAN, 1.0});
+		}
+		for (int j = 0; j < COUNT(uniform) * COUNT(uniform); j += 2) {
+			const double u[3] = {uniform[j % COUNT(uniform)], uniform[j / COUNT(uniform)],
+					     uniform[(i + j) % COUNT(uniform)]};
+			struct dielectric_sample sample;
+			set_case("sigma %g gamma %.17g n %g wi (%g, 0, %g) u %g %g %g", s->ndf.sigma_x, s->ndf.gamma,
+				 dielectric.side[0].n, wi.x, wi.z, u[0], u[1], u[2]);
+			OBSERVE(sample, flags, dielectric_sample(&dielectric, sampling, wi, u));
+			check(row, vec3_length(sample.wo), flags & trapping,
+			      (struct expected){1.0 - 4.0 * eps, 1.0 + 4.0 * eps, false, NAN, 1.0});
+			check(row, sample.weight, 0,
+			      (struct expected){0.0, sampling == SAMPLING_VISIBLE ? 1.0 + 1e-9 : INFINITY, true, NAN,
+						1.0});
+		}
+		trapping = TRAPS;
+	}
+}
+
+static double walk_f(const struct random_walk *walk, struct vec3 wi, struct vec3 wo,
+		     const struct random_numbers *numbers)
+{
+	double f[3];
+	random_walk_f(walk, wi, wo, 50, numbers, f);
+	return f[0];
+}
+
+static void sweep_walks(const struct subject *s)
+{
+	struct row *row = row_of("random walk", s->name);
+	int count = 0;
+	const struct random_numbers numbers = {next_number, &count};
+	/* Nearer to gamma = 1.5, or rougher, a walk takes its time. */
+	if (!vndf_supports(&s->ndf) || s->ndf.gamma < 1.51 || s->ndf.sigma_x > 1e3)
+		return;
+	for (int i = 0; i < EXTREME_DIRECTIONS; i++) {
+		const struct vec3 wi = i % 2 ? s->w[i] : vec3_opposite(s->w[i]);
+		struct random_walk walk;
+		struct random_walk_exit out;
+		double f;
+		int flags;
+		if (!(s->w[i].z > 1e-90) ||
+		    random_walk_init_dielectric(&walk, &s->ndf, i % 4 < 2 ? 1.5 : 0.4) != STATUS_OK)
+			continue;
+		trapping = FE_INVALID;
+		set_case("sigma %g gamma %.17g wi (%g, 0, %g) n %g, after %d numbers", s->ndf.sigma_x, s->ndf.gamma,
+			 wi.x, wi.z, walk.n[0], count);
+		OBSERVE(out, flags, random_walk_sample(&walk, wi, &numbers));
+		check(row, vec3_length(out.wo), flags & trapping,
+		      (struct expected){1.0 - 4.0 * eps, 1.0 + 4.0 * eps, false, NAN, 1.0});
+		check(row, out.weight[0], 0, (struct expected){1.0, 1.0, false, NAN, 1.0});
+		OBSERVE(f, flags, walk_f(&walk, wi, out.wo, &numbers));
+		check(row, f, flags & trapping, (struct expected){0.0, INFINITY, true, NAN, 1.0});
+		trapping = TRAPS;
+	}
+}
+
 /* |d ln D/d ln q| at a normal: what the rounding of h does to D. */
 static double sharpness(const struct subject *s, struct vec3_long h)
 {
@@ -553,6 +672,9 @@ static void sweep_subject(struct subject *s, bool few)
 	sweep_sample(s);
 	sweep_opposite(s);
 	sweep_visible(s);
+	sweep_inside(s);
+	sweep_transmission(s);
+	sweep_walks(s);
 	sweep_pairs(s);
 	if (few && s->ndf.sigma_x < 5.0)
 		sweep_energy(s);

@@ -463,7 +463,8 @@ static void check_scenario(const struct scenario *scenario)
 #define MODEL "--kd 0.3 --ks 0.5 --ndf std --gamma 2.5 --sigma 0.2"
 #define DRAWN(name) name ".csv", name ".gp", name ".png", name ".svg"
 #define QUICK "--threads 1 --size 16 --samples 1"
-#define CHEAP "--threads 1 --ndf ggx --sigma 0.2 --ior 1.5 --max-theta 5"
+#define FIT_CHEAP "--ndf ggx --sigma 0.2 --ior 1.5 --max-theta 5"
+#define CHEAP "--threads 1 " FIT_CHEAP
 
 static const struct scenario scenarios[] = {
 	{.name = "version", .arguments = "--version"},
@@ -531,7 +532,7 @@ static const struct scenario scenarios[] = {
 	 .output = {"new.pfm"},
 	 .partial = true,
 	 .heavy = true},
-	{.name = "render a fit", .arguments = "render a.binary " CHEAP " " QUICK, .heavy = true},
+	{.name = "render a fit", .arguments = "render a.binary " CHEAP " --size 16 --samples 1", .heavy = true},
 	{.name = "render in the light of a map",
 	 .arguments = "render a.binary " MODEL " " QUICK " -e map.pfm --light 0,1,1;1,0,1,2",
 	 .heavy = true},
@@ -543,7 +544,8 @@ static const struct scenario scenarios[] = {
 	{.name = "plot",
 	 .arguments = "plot two.csv --threads 1 -o plots",
 	 .output = {DRAWN("plots/errors"), "plots/a/ndf_D.csv", "plots/a/ndf_G1.csv", "plots/a/ndf.gp",
-		    "plots/a/ndf.svg", DRAWN("plots/a/map"), DRAWN("plots/a/slices")},
+		    "plots/a/ndf.svg", DRAWN("plots/a/map"), DRAWN("plots/a/slices"), "plots/a/slices_0.gp",
+		    "plots/a/slices_0.svg"},
 	 .heavy = true},
 	{.name = "plot a fit",
 	 .arguments = "plot a.binary " CHEAP " -o plots",
@@ -555,7 +557,7 @@ static const struct scenario scenarios[] = {
 	 .output = {"page/index.html"},
 	 .heavy = true},
 	{.name = "report of a fit",
-	 .arguments = "report a.binary " CHEAP " " QUICK " -o page",
+	 .arguments = "report a.binary " CHEAP " --size 16 --samples 1 -o page",
 	 .output = {"page/index.html", "page/fits.csv"},
 	 .heavy = true},
 	{.name = "fit a directory",
@@ -577,7 +579,7 @@ static const struct scenario scenarios[] = {
 	 .output = {"new.csv"},
 	 .heavy = true},
 	{.name = "fit --within", .arguments = "a.binary " CHEAP " --within 1%", .heavy = true},
-	{.name = "fit in two threads", .arguments = "a.binary d/e/b.binary " CHEAP " --threads 2", .heavy = true},
+	{.name = "fit in two threads", .arguments = "a.binary d/e/b.binary " FIT_CHEAP " --threads 2", .heavy = true},
 	{.name = "search", .arguments = "a.binary --threads 1 --ndf std --max-theta 3", .heavy = true},
 	{.name = "search of pl", .arguments = "a.binary --threads 1 --ndf pl --max-theta 2", .heavy = true},
 	{.name = "crs2",

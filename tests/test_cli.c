@@ -110,6 +110,9 @@ static void wrong_usage_is_refused(void **state)
 		{"a.binary --ndf phong", "bad value 'phong' for --ndf: expected one of std, ggx, beckmann"},
 		{"a.binary --ndf ggx,", "bad value 'ggx,' for --ndf"},
 		{"a.binary --ndf ggx,ggx", "twice"},
+		{"a.binary --ndf std --ndf ggx", "--ndf stands there twice"},
+		{"compare a.binary -o x.csv --output y.csv", "--output stands there twice"},
+		{"synth x.binary --kd 1 --kd=1", "--kd stands there twice"},
 		{"a.binary --gaf none",
 		 "bad value 'none' for --gaf: expected one of uncorrelated, correlated, v-groove"},
 		{"a.binary --fresnel x", "for --fresnel"},
@@ -192,6 +195,13 @@ static void bad_files_are_refused(void **state)
 	assert_string_equal(last.out, "");
 	stdfit("a.binary/under.binary " CHEAP);
 	expect_error(1, "cannot read 'a.binary/under.binary': Not a directory");
+	assert_string_equal(last.out, "");
+	shell("ln -s nowhere bad/link.binary; ln -s round.binary bad/round.binary");
+	stdfit("a.binary bad/link.binary " CHEAP);
+	expect_error(1, "cannot read 'bad/link.binary': No such file or directory");
+	assert_string_equal(last.out, "");
+	stdfit("info bad/round.binary");
+	expect_error(1, "cannot read 'bad/round.binary': Too many levels");
 	assert_string_equal(last.out, "");
 	make_file("bad/empty.binary", sound, 0);
 	expect_bad_file("bad/empty.binary", "cannot read");
@@ -797,6 +807,71 @@ static void compare_summarises_tables(void **state)
 	expect_out(",ggx,,\n(mean)");
 }
 
+/* A fit under each weight, a row each, the same as alone; the rows of one weight are never taken for those of another. */
+static void weights_stand_side_by_side(void **state)
+{
+	(void)state;
+	shell("\"$STDFIT\" synth w.binary --ndf ggx --sigma 0.2 --kd 0.3 --ks 0.5 --noise 0.3; for w in none "
+	      "solid-angle; do "
+	      "\"$STDFIT\" w.binary " CHEAP " --weight $w -o w-$w.csv; done; exec \"$STDFIT\" w.binary " CHEAP
+	      " --weight none,solid-angle -o both.csv");
+	expect_code(0);
+	shell("\"$STDFIT\" merge w-none.csv w-solid-angle.csv -o joined.csv");
+	expect_code(0);
+	char *both = without_seconds("both.csv"), *joined = without_seconds("joined.csv");
+	assert_string_equal(both, joined);
+	free(joined);
+	assert_int_equal(count_lines(both), 4);
+	assert_non_null(strstr(both, ",solid-angle,"));
+	/* Resumed: nothing is made again; only what is missing; and what is asked for no more goes. */
+	shell("cp both.csv again.csv; \"$STDFIT\" w.binary " CHEAP
+	      " --weight none,solid-angle -o again.csv --resume && cmp both.csv "
+	      "again.csv && grep -F weight=none both.csv >kept; { head -n 1 both.csv; cat kept; } >half.csv; "
+	      "\"$STDFIT\" w.binary " CHEAP
+	      " --weight solid-angle,none -o half.csv --resume && grep -xFf kept half.csv | wc -l");
+	expect_code(0);
+	assert_int_equal(atoi(last.out), 2);
+	char *half = without_seconds("half.csv");
+	assert_string_equal(half, both);
+	free(half);
+	free(both);
+	shell("exec \"$STDFIT\" w.binary " CHEAP " --weight solid-angle -o half.csv --resume -q");
+	expect_code(0);
+	char *one = without_seconds("half.csv"), *alone = without_seconds("w-solid-angle.csv");
+	assert_string_equal(one, alone);
+	free(one);
+	free(alone);
+	/* compare has a line and a summary for each; a share of one weight is told from one of both. */
+	stdfit("compare both.csv");
+	expect_code(0);
+	expect_out("material,weight,error_");
+	expect_out("\nw,none,");
+	expect_out("\n(wins),none,");
+	expect_out("\nw,solid-angle,");
+	expect_out("\n(wins),solid-angle,");
+	assert_int_equal(count_lines(last.out), 11);
+	stdfit("compare w-none.csv");
+	expect_out("material,error_");
+	shell("sed 's/w[.]binary/v.binary/g' w-none.csv >share.csv; exec \"$STDFIT\" merge both.csv share.csv");
+	expect_error(1, "another --ndf or --weight");
+	/* Rows are picked by their weight; an export's weight is that of a substitute. */
+	stdfit("export w.binary --from both.csv --ndf ggx --format json");
+	expect_error(1, "choose one with --ndf or --row");
+	stdfit("export w.binary --from both.csv --ndf ggx --weight solid-angle --format json");
+	expect_error(2, "--format json has every model");
+	stdfit("render w.binary --from both.csv --ndf ggx --weight solid-angle --size 16 --samples 4");
+	expect_code(0);
+	expect_out("\nw,ggx,solid-angle,");
+	stdfit("render w.binary --from both.csv --ndf ggx --row 1 --weight none --size 16 --samples 4");
+	expect_error(2, "exclude each other");
+	stdfit("w.binary " CHEAP " --weight none,cosine --table");
+	expect_out("beckmann  cosine ");
+	stdfit("w.binary --weight none,none");
+	expect_error(2, "'none' stands there twice");
+	stdfit("w.binary --weight none,cosine --trace t.csv");
+	expect_error(2, "--trace takes one --weight");
+}
+
 static void within_takes_the_simplest(void **state)
 {
 	(void)state;
@@ -1022,6 +1097,7 @@ int main(void)
 		cmocka_unit_test(a_reader_that_is_gone_ends_it_quietly),
 		cmocka_unit_test(output_into_head_ends_silently),
 		cmocka_unit_test(compare_summarises_tables),
+		cmocka_unit_test(weights_stand_side_by_side),
 		cmocka_unit_test(within_takes_the_simplest),
 		cmocka_unit_test(faults_of_the_data_are_told),
 		cmocka_unit_test(small_stacks_are_made_larger_or_told),

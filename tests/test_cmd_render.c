@@ -47,10 +47,10 @@ static void a_material_beside_its_own_model_shows_no_difference(void **state)
 	(void)state;
 	stdfit("render m.binary " MODEL " " QUICK " -o own.pfm");
 	expect_code(0);
-	expect_out("material,ndf,error,rmse,delta_e,ssim\nm,std,,");
+	expect_out("material,ndf,weight,error,rmse,delta_e,ssim\nm,std,,,");
 	assert_int_equal(count_lines(last.out), 2);
-	check_between(number_at(4), 0, 0.2, "delta E");
-	check_between(number_at(5), 0.999, 1, "SSIM");
+	check_between(number_at(5), 0, 0.2, "delta E");
+	check_between(number_at(6), 0.999, 1, "SSIM");
 	assert_string_equal(last.err, "");
 	/* Two spheres, and below them the legend and the difference. */
 	struct image image = read_picture("own.pfm");
@@ -66,7 +66,7 @@ static void a_material_beside_its_own_model_shows_no_difference(void **state)
 	/* Another model is another picture. */
 	stdfit("render m.binary --kd 0.3,0.2,0.1 " QUICK);
 	expect_code(0);
-	assert_true(number_at(4) > 1);
+	assert_true(number_at(5) > 1);
 }
 
 static void the_same_bits_for_seed_and_threads(void **state)
@@ -114,8 +114,8 @@ static void fits_and_tables_make_sheets(void **state)
 	stdfit("render fits.csv " QUICK " -o sheet.pfm");
 	expect_code(0);
 	assert_int_equal(count_lines(last.out), 5);
-	expect_out("\nm,beckmann,");
-	expect_out("\nn,ggx,");
+	expect_out("\nm,beckmann,none,");
+	expect_out("\nn,ggx,none,");
 	struct image sheet = read_picture("sheet.pfm");
 	check_between(sheet.width, 3 * 24, 4 * 24, "three columns");
 	check_between(sheet.height, 2 * 24, 4 * 24, "two rows");
@@ -132,10 +132,26 @@ static void fits_and_tables_make_sheets(void **state)
 	assert_true(more.width < sheet.width && more.height > sheet.height + 24);
 	image_free(&more);
 	image_free(&sheet);
-	/* And from fits made for the picture. */
+	/* And from fits made for the picture. Without -o the numbers alone. */
 	stdfit("render m.binary " CHEAP " " QUICK);
 	expect_code(0);
+	expect_out("material,ndf,weight,error,rmse,delta_e,ssim\n");
 	expect_out("\nm,ggx,");
+	assert_true(number_at(5) > 0);
+	/* These have the weight that pictures agree with best, which is told; who names a weight gets that. */
+	char *own = strdup(last.out);
+	stdfit("render m.binary " CHEAP " " QUICK);
+	expect_error(0, "fitted under --weight solid-angle");
+	assert_string_equal(last.out, own);
+	stdfit("render m.binary --weight solid-angle " CHEAP " " QUICK);
+	assert_string_equal(last.err, "");
+	assert_string_equal(last.out, own);
+	stdfit("render m.binary --weight none " CHEAP " " QUICK);
+	assert_string_equal(last.err, "");
+	assert_string_not_equal(last.out, own);
+	stdfit("render fits.csv " QUICK);
+	assert_string_equal(last.err, "");
+	free(own);
 	/* compare shows the same errors beside its own. */
 	stdfit("compare fits.csv --pictures");
 	expect_code(0);
@@ -189,6 +205,9 @@ static void wrong_usage_is_refused(void **state)
 	expect_error(1, "cannot write 'no/such/place.pfm'");
 	stdfit("render m.binary " MODEL " -o no.jpg");
 	expect_error(2, "expected -o FILE.png, -o FILE.pfm or -o -");
+	stdfit("render m.binary " MODEL " " QUICK " --difference");
+	expect_error(2, "--difference needs -o FILE");
+	assert_string_equal(last.out, "");
 	stdfit("render m.binary " MODEL " --light 0,0,0");
 	expect_error(2, "bad value '0,0,0' for --light");
 	stdfit("render m.binary " MODEL " --light 1,2,3,4,5");
@@ -281,6 +300,65 @@ static void an_interrupt_leaves_no_picture(void **state)
 	assert_false(is_there("never.pfm"));
 }
 
+/* Glass of each NDF in a row; with all orders of scattering it is brighter. */
+static void glass_is_shown_without_a_file(void **state)
+{
+	(void)state;
+#define TWO_SPHERES "render --transmission --ndf std,ggx --sigma 1 --gamma 2.4 " QUICK " -e sky -o glass.pfm"
+	double sum[2] = {0, 0};
+	for (int multiple = 0; multiple < 2; multiple++) {
+		if (multiple)
+			stdfit(TWO_SPHERES " --multiple");
+		else
+			stdfit(TWO_SPHERES);
+		expect_code(0);
+		assert_string_equal(last.out, "");
+		assert_string_equal(last.err, "");
+		struct image image = read_picture("glass.pfm");
+		check_between(image.width, 2 * 24, 3 * 24, "width");
+		check_between(image.height, 2 * 24, 3 * 24, "height");
+		for (int y = -4; y < 4; y++)
+			for (int x = -4; x < 4; x++)
+				sum[multiple] += image_at(&image, MIDDLE_X + x, MIDDLE_Y + y)[1] / 64;
+		image_free(&image);
+	}
+	check_between(sum[0], 0.01, 10, "single");
+	check_between(sum[1] / sum[0], 1.1, 20, "multiple over single");
+}
+
+static void glass_takes_its_own_options(void **state)
+{
+	(void)state;
+#define GLASS "render --transmission --sigma 0.3 "
+	static const struct {
+		const char *arguments, *text;
+	} wrong[] = {
+		{"render --multiple m.binary", "--multiple means nothing without --transmission"},
+		{GLASS "--gamma 2", "--transmission needs -o"},
+		{GLASS "--gamma 2 -o no.pfm m.binary", "--transmission shows no files, found 1"},
+		{GLASS "-o no.pfm", "--ndf std needs --gamma"},
+		{GLASS "--ndf ggx --gamma 2 -o no.pfm", "--ndf ggx has no --gamma"},
+		{"render --transmission --ndf ggx -o no.pfm", "--transmission needs --sigma"},
+		{GLASS "--ndf ggx --ks 1 -o no.pfm", "--ks means nothing with --transmission"},
+		{GLASS "--ndf ggx --multiple --gaf correlated -o no.pfm", "--gaf means nothing with --multiple"},
+		{GLASS "--ndf ggx --multiple --sampling ndf -o no.pfm", "--sampling means nothing with --multiple"},
+		{GLASS "--ndf ggx --gaf v-groove -o no.pfm", "v-groove is of reflection alone"},
+		{GLASS "--ndf ggx -o no.jpg", "expected -o FILE.png"},
+		{GLASS "--ndf ggx --light 0,0,0 -o no.pfm", "for --light"},
+	};
+	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+		stdfit(wrong[i].arguments);
+		expect_error(2, wrong[i].text);
+	}
+	stdfit(GLASS "--ndf gtr --gamma 2 --multiple -o no.pfm " QUICK);
+	expect_error(1, "there is no glass of --ndf gtr with these options");
+	stdfit(GLASS "--ndf pl -o no.pfm");
+	expect_error(1, "--ndf pl does not allow these parameters");
+	stdfit(GLASS "--ndf gtr --gamma 2 " QUICK " -o no/such/place.pfm");
+	expect_error(1, "cannot write 'no/such/place.pfm'");
+	assert_false(is_there("no.pfm"));
+}
+
 static int set_up(void **state)
 {
 	if (enter_directory(state))
@@ -303,6 +381,8 @@ int main(void)
 		cmocka_unit_test(wrong_usage_is_refused),
 		cmocka_unit_test(one_bad_file_costs_only_itself),
 		cmocka_unit_test(files_are_those_that_were_fitted),
+		cmocka_unit_test(glass_is_shown_without_a_file),
+		cmocka_unit_test(glass_takes_its_own_options),
 		cmocka_unit_test(an_interrupt_leaves_no_picture),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);

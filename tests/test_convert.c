@@ -2,6 +2,7 @@
 /* Measurements as tables and as CSV of samples: the functions, and stdfit convert. */
 #include "data_readers/measurement_read.h"
 #include "data_readers/merl.h"
+#include "data_readers/rgl.h"
 #include "data_readers/samples_csv.h"
 #include "fit/cli/files.h"
 #include "resampled.h"
@@ -135,19 +136,88 @@ static void convert_writes_samples_and_tables(void **state)
 	expect_code(0);
 	assert_string_equal(last.err, "");
 	stdfit("convert gray.dat gray.csv");
-	expect_part(last.err, "2 samples; lost: 1 negative left out; 1 at or below the horizon left out\n", __LINE__);
+	expect_part(last.err, "2 samples; lost: left out: 1 negative; 1 at or below the horizon\n", __LINE__);
 	stdfit("convert blue.brdf blue.csv");
 	expect_part(last.err,
-		    "2 samples; lost: 1 not measured; 1 out of gamut, their negative part set to 0; 5 wavelengths "
-		    "became linear sRGB\n",
+		    "2 samples; lost: 1 out of gamut, their negative part set to 0; 5 wavelengths became linear sRGB; "
+		    "left out: 1 not measured\n",
 		    __LINE__);
 	stdfit("convert --gamut mask blue.brdf blue.csv");
 	expect_part(last.err,
-		    "1 samples; lost: 1 not measured; 1 out of gamut left out; 5 wavelengths became linear sRGB\n",
+		    "1 sample; lost: 5 wavelengths became linear sRGB; left out: 1 not measured; 1 out of gamut\n",
 		    __LINE__);
 	stdfit("convert --quantity reflectance_factor gray.dat factor.csv -q");
 	shell("tail -n 1 factor.csv | cut -d, -f5");
 	assert_string_equal(last.out, "0.636619747\n");
+}
+
+static double told_error(void)
+{
+	const char *words = "interpolated, with an error of ", *at = strstr(last.err, words);
+
+	if (!at)
+		fail_msg("no error in %s", last.err);
+	return strtod(at + strlen(words), NULL);
+}
+
+/* A table as an RGL file: the error is the L1 distance that its definition gives, and small. */
+static void tables_become_rgl_files(void **state)
+{
+	(void)state;
+	struct measurement table, file;
+	struct error error;
+	double difference = 0, norm = 0;
+
+	stdfit("synth smooth.binary " MODEL);
+	stdfit("convert smooth.binary smooth.bsdf");
+	expect_code(0);
+	expect_part(last.err, "1111430 samples; lost: interpolated, with an error of ", __LINE__);
+	const double told = told_error();
+	assert_int_equal(measurement_read("smooth.binary", NULL, &table, &error), STATUS_OK);
+	assert_int_equal(measurement_read("smooth.bsdf", NULL, &file, &error), STATUS_OK);
+	assert_int_equal(file.scattered->symmetry, SYMMETRY_ISOTROPIC);
+	for (int i = 0; i < MERL_THETA_H; i++)
+		for (int j = 0; j < MERL_THETA_D; j++)
+			for (int k = 0; k < 180; k += 3) {
+				const size_t at = measurement_at(180, i, j, k);
+				double f[3];
+				struct vec3 wi, wo;
+
+				halfdiff_trig_dirs(bins_trig(BINS_NODE, i, j, k), &wi, &wo);
+				if (isnan(table.value[0][at]) || !rgl_f(file.rgl, wi, wo, f))
+					continue;
+				for (int c = 0; c < 3; c++) {
+					const double w = cell_measure(i, j) * wi.z * wo.z;
+
+					difference += w * fabs(f[c] - (double)table.value[c][at]);
+					norm += w * (double)table.value[c][at];
+				}
+			}
+	check_rel(told, 100 * difference / norm, 0.06, "the error that is told");
+	check_between(told, 0.01, 0.6, "the error");
+	measurement_free(&table);
+	measurement_free(&file);
+	/* And back, it is nearly the model again. */
+	stdfit("convert smooth.bsdf again.binary -q");
+	stdfit("eval again.binary " MODEL " --json");
+	expect_out("\"error_solid_angle\": 0.00");
+}
+
+static void turned_samples_become_rgl_files(void **state)
+{
+	(void)state;
+	stdfit("synth turned.csv --ndf ggx --sigma 0.5,0.25 --angle 25 --kd 0.3 --ks 0.5");
+	stdfit("convert turned.csv turned.bsdf");
+	expect_code(0);
+	check_between(told_error(), 0.5, 8, "the error");
+	stdfit("fit turned.bsdf --anisotropic --ndf ggx -q -o turned-fits.csv");
+	expect_code(0);
+	struct csv_table fits = read_table("turned-fits.csv");
+	/* What lies between samples 15 and 20 degrees apart is smoothed. */
+	check_rel(result_number(fits.row[0], RESULT_SIGMA_X), 0.5, 0.1, "sigma_x");
+	check_rel(result_number(fits.row[0], RESULT_SIGMA_Y), 0.25, 0.2, "sigma_y");
+	check_abs(result_number(fits.row[0], RESULT_ANGLE), 25, 3, "angle");
+	csv_table_free(&fits);
 }
 
 static void info_tells_what_is_in_a_file(void **state)
@@ -162,12 +232,12 @@ static void info_tells_what_is_in_a_file(void **state)
 	expect_out("format               alta\n");
 	expect_out("symmetry             isotropic\n");
 	expect_out("channels             1\n");
-	expect_out("left_out             negative: 1; at or below the horizon: 1\n");
+	expect_out("left_out             1 negative; 1 at or below the horizon\n");
 	expect_out("suspects             out of gamut, set to 0: 1\n");
 	expect_out("channels             5\n");
-	expect_out("left_out             not measured: 1\n");
+	expect_out("left_out             1 not measured\n");
 	stdfit("info --gamut mask blue.brdf --table");
-	expect_out("left_out             not measured: 1; out of gamut: 1\n");
+	expect_out("left_out             1 not measured; 1 out of gamut\n");
 }
 
 static void a_directory_has_the_known_files(void **state)
@@ -279,11 +349,11 @@ static void wrong_usage_is_refused(void **state)
 	stdfit("convert gray.dat a.csv b.csv");
 	expect_error(2, "expected IN and OUT, found 3 names");
 	stdfit("convert gray.dat a.txt");
-	expect_error(2, "expected OUT.csv or OUT.binary");
+	expect_error(2, "expected OUT.csv, OUT.binary or OUT.bsdf");
 	stdfit("convert paint.csv ./paint.csv");
 	expect_error(2, "OUT names a file that is to be read");
 	stdfit("convert gray.dat a.csv --phi 360");
-	expect_error(2, "--phi means nothing for a CSV");
+	expect_error(2, "--phi means nothing but for a MERL file");
 	stdfit("convert none.dat a.csv");
 	expect_error(1, "cannot read 'none.dat': No such file");
 	stdfit("convert gray.dat nowhere/a.csv");
@@ -303,6 +373,8 @@ int main(void)
 		cmocka_unit_test(samples_of_a_table_come_back),
 		cmocka_unit_test(a_merl_file_takes_no_samples),
 		cmocka_unit_test(convert_writes_samples_and_tables),
+		cmocka_unit_test(tables_become_rgl_files),
+		cmocka_unit_test(turned_samples_become_rgl_files),
 		cmocka_unit_test(info_tells_what_is_in_a_file),
 		cmocka_unit_test(a_directory_has_the_known_files),
 		cmocka_unit_test(noisy_samples_give_their_parameters_back),

@@ -30,7 +30,7 @@ static void for_all(void (*check)(const struct cook_torrance *model, struct vec3
 			struct cook_torrance model = model_make(ndf_name(ndf_at(d)), sigma, 2.7);
 			for (int i = 0; i < 7 * 7 * 4; i++) {
 				model.gaf = (enum gaf)(i % GAF_COUNT);
-				model.fresnel = (enum fresnel)(i % FRESNEL_COUNT);
+				model.fresnel = (enum fresnel)(i % (FRESNEL_F82 + 1));
 				check(&model, vec3_from_spherical_deg(thetas[i % 7], 11.0),
 				      vec3_from_spherical_deg(thetas[i / 7 % 7], 11.0 + phis[i / 49]));
 			}

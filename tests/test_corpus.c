@@ -82,6 +82,18 @@ static void result_tables_keep_their_promises(void **state)
 	run_corpus("table", fuzz_table);
 }
 
+static void ndf_of_rows_keeps_its_promises(void **state)
+{
+	(void)state;
+	run_corpus("ndf", fuzz_ndf);
+}
+
+static void merge_keeps_its_promises(void **state)
+{
+	(void)state;
+	run_corpus("merge", fuzz_merge);
+}
+
 static void command_lines_keep_their_promises(void **state)
 {
 	(void)state;
@@ -140,6 +152,8 @@ int main(void)
 		cmocka_unit_test(models_keep_their_promises),
 		cmocka_unit_test(pictures_keep_their_promises),
 		cmocka_unit_test(result_tables_keep_their_promises),
+		cmocka_unit_test(ndf_of_rows_keeps_its_promises),
+		cmocka_unit_test(merge_keeps_its_promises),
 		cmocka_unit_test(command_lines_keep_their_promises),
 		cmocka_unit_test(csv_reader_keeps_its_promises),
 		cmocka_unit_test(alta_reader_keeps_its_promises),

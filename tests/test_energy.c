@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
 #include "chi_square.h"
+#include "sampled_albedo.h"
 #include "src/energy.h"
+#include "src/vndf.h"
 #include <gsl/gsl_integration.h>
 
 static struct cook_torrance mirror(const char *name, double sigma, double gamma, enum gaf gaf)
@@ -72,6 +74,58 @@ static void albedo_is_the_mean_of_sampled_weights(void **state)
 		model.fresnel = FRESNEL_DIELECTRIC;
 		model.n = 1.7;
 		check_sampled(&model, 71.0, &seed);
+	}
+}
+
+static void an_anisotropic_lobe_is_largest_in_an_axis_plane(void **state)
+{
+	static const struct {
+		const char *ndf;
+		double sigma_x, sigma_y, gamma;
+		enum gaf gaf;
+		enum fresnel fresnel;
+	} lobes[] = {{"std", 0.3, 0.1, 2.5, GAF_UNCORRELATED, FRESNEL_DIELECTRIC},
+		     {"ggx", 0.1, 0.3, 2, GAF_UNCORRELATED, FRESNEL_NONE},
+		     {"beckmann", 0.8, 0.2, INFINITY, GAF_CORRELATED, FRESNEL_DIELECTRIC},
+		     {"ggx", 1.5, 0.3, 2, GAF_UNCORRELATED, FRESNEL_NONE}};
+	(void)state;
+	for (size_t i = 0; i < sizeof lobes / sizeof *lobes; i++) {
+		struct cook_torrance model = {.gaf = lobes[i].gaf,
+					      .fresnel = lobes[i].fresnel,
+					      .n = 1.5,
+					      .kd = {0.1, 0, 0},
+					      .ks = {0.5, 1, 0}};
+		double albedo[3], theta_i, largest = 0;
+		assert_int_equal(ndf_init(&model.ndf, ndf_find(lobes[i].ndf), lobes[i].sigma_x, lobes[i].sigma_y,
+					  lobes[i].gamma),
+				 STATUS_OK);
+		assert_int_equal(ndf_turn(&model.ndf, 25), STATUS_OK);
+		assert_int_equal(energy_albedo_max(&model, albedo, &theta_i), STATUS_OK);
+		/* At the very horizon there are no samples. */
+		const double there = fmin(theta_i * 180 / M_PI, 89.999);
+		for (int p = 0; p <= 90; p += 45)
+			largest = fmax(largest, sampled_albedo(&model, there, 25 + p, 10000));
+		check_abs(largest, albedo[1], 3e-3, "in the largest direction");
+		check_abs(albedo[0], 0.1 + 0.5 * albedo[1], 1e-12, "red");
+		for (int t = 0; t < 90; t += 11)
+			for (int p = 0; p <= 90; p += 15)
+				assert_true(sampled_albedo(&model, t, 25 + p, 2000) < albedo[1] + 3e-3);
+	}
+}
+
+/* As good as isotropic, by the other integral. */
+static void round_axes_are_none(void **state)
+{
+	struct cook_torrance model = {.fresnel = FRESNEL_DIELECTRIC, .n = 1.7, .ks = {1, 1, 1}};
+	double albedo[3], with_axes[3], theta_i;
+	(void)state;
+	for (enum gaf gaf = GAF_UNCORRELATED; gaf <= GAF_CORRELATED; gaf++) {
+		model.gaf = gaf;
+		assert_int_equal(ndf_init(&model.ndf, ndf_find("std"), 0.4, 0.4, 2.5), STATUS_OK);
+		assert_int_equal(energy_albedo_max(&model, albedo, &theta_i), STATUS_OK);
+		assert_int_equal(ndf_init(&model.ndf, ndf_find("std"), 0.4, 0.4 * (1 + 1e-9), 2.5), STATUS_OK);
+		assert_int_equal(energy_albedo_max(&model, with_axes, &theta_i), STATUS_OK);
+		check_abs(with_axes[0], albedo[0], 2e-5, "albedo");
 	}
 }
 
@@ -224,6 +278,8 @@ static void arguments_outside_the_domain_are_refused(void **state)
 	}
 	assert_int_equal(ndf_init(&model.ndf, ndf_find("ggx"), 0.3, 0.2, 2.0), STATUS_OK);
 	assert_int_equal(energy_lobe(&model, 0.5, &albedo), STATUS_UNSUPPORTED);
+	assert_int_equal(energy_furnace(&model, &albedo), STATUS_UNSUPPORTED);
+	model.gaf = GAF_V_GROOVE;
 	assert_int_equal(energy_albedo_max(&model, channels, &albedo), STATUS_UNSUPPORTED);
 	check_abs(albedo, 7.0, 0.0, "untouched");
 	check_abs(channels[1], 7.0, 0.0, "untouched");
@@ -233,6 +289,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(albedo_matches_golden_rows),
+		cmocka_unit_test(an_anisotropic_lobe_is_largest_in_an_axis_plane),
+		cmocka_unit_test(round_axes_are_none),
 		cmocka_unit_test(albedo_is_the_mean_of_sampled_weights),
 		cmocka_unit_test(a_flat_mirror_returns_all_and_nothing_returns_more),
 		cmocka_unit_test(albedo_of_a_model_is_the_sum_of_its_terms),

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The GLSL of BRDF Explorer files, run: the same values as cook_torrance_f() for every NDF, G, F and form of Lambda, in
- * double and in float arithmetic; and glslangValidator takes it, where that is installed. */
+ * double and in float arithmetic, at the defaults of the sliders and where they are moved to; and glslangValidator takes it
+ * inside the uniforms of BRDF Explorer, where that is installed. */
 #include "check.h"
 #include "fit/export/export.h"
 #include "glsl.h"
@@ -47,16 +48,64 @@ static char *section(const char *text, const char *name)
 	return strndup(from, (size_t)(to - from) + 1);
 }
 
-/* The shader of an export, with its parameters as uniforms at their defaults. */
-static struct glsl *open_shader(const char *text, bool rounds)
+/* A parameter of a file, as BRDF Explorer reads its line. */
+struct parameter {
+	char name[32];
+	bool is_float;
+	double min, max, value;
+};
+
+/* The next one; NULL when there is none. BRDF Explorer shows six digits of a float, and takes the value from there. */
+static const char *next_parameter(const char *at, struct parameter *parameter)
+{
+	char shown[32];
+	int used, on;
+
+	if (sscanf(at, "bool %31s %d\n%n", parameter->name, &on, &used) == 2) {
+		parameter->is_float = false;
+		parameter->value = on;
+		return at + used;
+	}
+	if (sscanf(at, "float %31s %lf %lf %lf\n%n", parameter->name, &parameter->min, &parameter->max,
+		   &parameter->value, &used) != 4) {
+		assert_string_equal(at, "");
+		return NULL;
+	}
+	assert_true(parameter->min < parameter->max);
+	check_between(parameter->value, parameter->min, parameter->max, parameter->name);
+	parameter->is_float = true;
+	snprintf(shown, sizeof shown, "%g", parameter->value);
+	parameter->value = strtod(shown, NULL);
+	return at + used;
+}
+
+/* Where sliders are moved to; an empty name ends the list. */
+struct move {
+	const char *name;
+	double to;
+};
+
+/* The shader of an export, with its parameters as uniforms at their defaults, but for those of `moves` (may be NULL), each
+ * of which the file has to have. */
+static struct glsl *open_shader(const char *text, bool rounds, const struct move *moves)
 {
 	char *parameters = section(text, "parameters"), *shader = section(text, "shader");
 	struct glsl *glsl = glsl_open(shader, rounds);
-	char name[32];
-	int used, on;
+	struct parameter parameter;
+	int n_moved = 0, n_moves = 0;
 
-	for (const char *at = parameters; sscanf(at, "bool %31s %d\n%n", name, &on, &used) == 2; at += used)
-		glsl_declare(glsl, name, glsl_bool(on), true);
+	for (const char *at = parameters; (at = next_parameter(at, &parameter));) {
+		double value = parameter.value;
+		for (n_moves = 0; moves && *moves[n_moves].name; n_moves++)
+			if (!strcmp(moves[n_moves].name, parameter.name)) {
+				check_between(moves[n_moves].to, parameter.min, parameter.max, parameter.name);
+				value = moves[n_moves].to;
+				n_moved++;
+			}
+		glsl_declare(glsl, parameter.name, parameter.is_float ? glsl_float(glsl, value) : glsl_bool(value > 0),
+			     true);
+	}
+	assert_int_equal(n_moved, n_moves);
 	glsl_parse(glsl);
 	free(parameters);
 	free(shader);
@@ -108,10 +157,12 @@ static void pick(int i, double sigma, unsigned *seed, struct vec3 *wi, struct ve
 
 enum { PAIRS = 48 };
 
-static void compare(const struct cook_torrance *model, const char *what)
+/* The file of one model, with sliders moved, is another. */
+static void compare_moved(const struct cook_torrance *from, const struct move *moves, const struct cook_torrance *model,
+			  const char *what)
 {
-	char *text = export_text(model), label[200];
-	struct glsl *exact = open_shader(text, false), *rounded = open_shader(text, true);
+	char *text = export_text(from), label[200];
+	struct glsl *exact = open_shader(text, false, moves), *rounded = open_shader(text, true, moves);
 	const double D0 = ndf_D(&model->ndf, (struct vec3){0, 0, 1});
 	unsigned seed = 7;
 
@@ -139,6 +190,11 @@ static void compare(const struct cook_torrance *model, const char *what)
 	glsl_free(exact);
 	glsl_free(rounded);
 	free(text);
+}
+
+static void compare(const struct cook_torrance *model, const char *what)
+{
+	compare_moved(model, NULL, model, what);
 }
 
 /* Values of a model below a float's range, far out in a Gaussian tail, are lost: kd is there to stay above. */
@@ -247,6 +303,35 @@ static void shader_is_the_model_for_every_form_of_Lambda(void **state)
 	}
 }
 
+static void shader_is_the_model_with_axes(void **state)
+{
+	static const struct {
+		const char *ndf;
+		double sigma_x, sigma_y, gamma, angle;
+	} axes[] = {{"ggx", 0.3, 0.1, 2, 20},
+		    {"ggx", 0.1, 0.3, 2, 20},
+		    {"std", 0.05, 0.2, 1.7, -65},
+		    {"std", 0.4, 0.2, 5, 90},
+		    {"beckmann", 0.5, 0.3, INFINITY, 1e-40},
+		    {"hyper-cauchy", 0.3, 0.2, 2.3, 45}};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof axes / sizeof *axes; i++)
+		for (enum gaf gaf = 0; gaf < GAF_COUNT; gaf++) {
+			struct ndf ndf;
+			char label[100];
+
+			assert_int_equal(
+				ndf_init(&ndf, ndf_find(axes[i].ndf), axes[i].sigma_x, axes[i].sigma_y, axes[i].gamma),
+				STATUS_OK);
+			assert_int_equal(ndf_turn(&ndf, axes[i].angle), STATUS_OK);
+			struct cook_torrance model = model_of(&ndf);
+			model.gaf = gaf;
+			snprintf(label, sizeof label, "%s, %s, axes at %g", axes[i].ndf, gaf_name(gaf), axes[i].angle);
+			compare(&model, label);
+		}
+}
+
 static void shader_is_the_model_for_indices_near_1_and_far(void **state)
 {
 	static const double n[] = {1.0001, 1.01, 3, 38.575, 100}, k[] = {0, 1e-3, 0.5, 8, 100};
@@ -276,6 +361,83 @@ static void shader_is_the_model_with_one_term_only(void **state)
 	compare(&model, "no diffuse term");
 }
 
+static struct cook_torrance shaped(const char *ndf, double sigma, double gamma)
+{
+	struct ndf shape;
+
+	assert_int_equal(ndf_init(&shape, ndf_find(ndf), sigma, sigma, gamma), STATUS_OK);
+	return model_of(&shape);
+}
+
+/* Every slider, each alone and all at once. gamma_shape from GGX to sharper and to longer tails. */
+static void sliders_give_the_other_model(void **state)
+{
+	static const struct {
+		const char *ndf;
+		double sigma, gamma, to_sigma, to_gamma;
+	} shapes_moved[] = {
+		{"std", 0.1234567891, 1.8, 0.31, 2.7},
+		{"std", 0.02, 2, 0.5, 1.56},
+		{"std", 0.2, 9.5, 0.11, 4},
+		{"std", 0.3, 1.7, 0.2, 2},
+		{"hyper-cauchy", 0.2, 2.3, 0.4, 3.1},
+		{"t-family", 0.2, 3.1, 0.3, 2.4},
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof shapes_moved / sizeof *shapes_moved; i++) {
+		const char *ndf = shapes_moved[i].ndf;
+		const double sigma = shapes_moved[i].to_sigma, gamma = shapes_moved[i].to_gamma;
+		const struct cook_torrance from = shaped(ndf, shapes_moved[i].sigma, shapes_moved[i].gamma);
+		struct cook_torrance to = shaped(ndf, sigma, from.ndf.gamma);
+		compare_moved(&from, (struct move[]){{"sigma", sigma}, {"", 0}}, &to, "sigma moved");
+		to = shaped(ndf, from.ndf.sigma_x, gamma);
+		compare_moved(&from, (struct move[]){{"gamma_shape", gamma}, {"", 0}}, &to, "gamma moved");
+		to = shaped(ndf, sigma, gamma);
+		to.n = 1.7;
+		to.kd[1] = 0.3;
+		to.ks[2] = 0.11;
+		compare_moved(&from,
+			      (struct move[]){{"sigma", sigma},
+					      {"gamma_shape", gamma},
+					      {"n", 1.7},
+					      {"kd_g", 0.3},
+					      {"ks_b", 0.11},
+					      {"", 0}},
+			      &to, "all moved");
+	}
+	struct cook_torrance from = shaped("ggx", 0.2, 2), to = shaped("ggx", 0.35, 2);
+	compare_moved(&from, (struct move[]){{"sigma", 0.35}, {"", 0}}, &to, "ggx moved");
+	from = shaped("beckmann", 0.2, INFINITY);
+	to = shaped("beckmann", 0.35, INFINITY);
+	compare_moved(&from, (struct move[]){{"sigma", 0.35}, {"", 0}}, &to, "beckmann moved");
+	for (enum fresnel fresnel = FRESNEL_SCHLICK; fresnel <= FRESNEL_CONDUCTOR; fresnel++) {
+		from = shaped("gtr", 0.2, 1.4);
+		from.fresnel = fresnel;
+		to = from;
+		to.n = 2.25;
+		to.k = fresnel == FRESNEL_CONDUCTOR ? 1.5 : to.k;
+		compare_moved(&from,
+			      (struct move[]){{"n", 2.25}, {fresnel == FRESNEL_CONDUCTOR ? "k" : "", 1.5}, {"", 0}},
+			      &to, "index moved");
+	}
+	from = to = shaped("ggx", 0.2, 2);
+	assert_int_equal(ndf_init(&from.ndf, from.ndf.class, 0.2, 0.5, 2), STATUS_OK);
+	assert_int_equal(ndf_init(&to.ndf, to.ndf.class, 0.3, 0.4, 2), STATUS_OK);
+	compare_moved(&from, (struct move[]){{"sigma_x", 0.3}, {"sigma_y", 0.4}, {"", 0}}, &to, "axes moved");
+}
+
+/* A slider reaches the value, whatever that is. */
+static void ranges_hold_the_value(void **state)
+{
+	struct cook_torrance model = shaped("std", 5e-5, 1200);
+
+	(void)state;
+	model.n = 120;
+	model.kd[0] = 3;
+	compare(&model, "values beyond the usual");
+}
+
 /* Constants that no float holds are refused, and nothing promised. */
 static void out_of_range_is_refused(void **state)
 {
@@ -293,17 +455,25 @@ static void out_of_range_is_refused(void **state)
 	fclose(file);
 }
 
-/* The shader as BRDF Explorer wraps it: uniforms before it, a main() behind it. */
+/* The shader as BRDF Explorer wraps it: uniforms before it, its own among them, and a main() behind it. */
 static void write_fragment_shader(const char *path, const char *text)
 {
-	char *parameters = section(text, "parameters"), *shader = section(text, "shader"), name[32];
+	static const char *const own[] = {
+		"vec3 incidentVector", "float incidentTheta", "float incidentPhi",   "float brightness",
+		"float gamma",         "float exposure",      "float useNDotL",      "int totalSamples",
+		"float phiD",          "float thetaH",        "float thetaD",        "float useLogPlot",
+		"vec3 colorMask",      "vec3 drawColor",      "float renderWithIBL", "float thickness",
+		"int nSamples",        "int samplingMode",    "float phiV",          "int stepSize"};
+	char *parameters = section(text, "parameters"), *shader = section(text, "shader");
 	FILE *file = fopen(path, "w");
-	int used, on;
+	struct parameter parameter;
 
 	assert_non_null(file);
 	fprintf(file, "#version 410\nin vec3 L;\nin vec3 V;\nout vec4 color;\n");
-	for (const char *at = parameters; sscanf(at, "bool %31s %d\n%n", name, &on, &used) == 2; at += used)
-		fprintf(file, "uniform bool %s;\n", name);
+	for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+		fprintf(file, "uniform %s;\n", own[i]);
+	for (const char *at = parameters; (at = next_parameter(at, &parameter));)
+		fprintf(file, "uniform %s %s;\n", parameter.is_float ? "float" : "bool", parameter.name);
 	fprintf(file,
 		"%s\nvoid main()\n{\n\tcolor = vec4(BRDF(L, V, vec3(0, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0)), 1);\n}\n",
 		shader);
@@ -356,8 +526,11 @@ int main(void)
 		cmocka_unit_test(shader_is_the_model_for_every_shape),
 		cmocka_unit_test(shader_is_the_model_for_every_G_and_F),
 		cmocka_unit_test(shader_is_the_model_for_every_form_of_Lambda),
+		cmocka_unit_test(shader_is_the_model_with_axes),
 		cmocka_unit_test(shader_is_the_model_for_indices_near_1_and_far),
 		cmocka_unit_test(shader_is_the_model_with_one_term_only),
+		cmocka_unit_test(sliders_give_the_other_model),
+		cmocka_unit_test(ranges_hold_the_value),
 		cmocka_unit_test(out_of_range_is_refused),
 		cmocka_unit_test(glslang_takes_it),
 	};

@@ -204,6 +204,23 @@ static void the_tarball_holds_what_git_knows(void **state)
 	assert_string_equal(last.out, "");
 }
 
+/* By hand, without some of what the program can use: one line names the packages; with all of it, none. */
+static void what_is_left_out_is_told(void **state)
+{
+	(void)state;
+	run("mkdir -p tools; for t in pkg-config gnuplot; do printf '#!/bin/sh\nexit 0\n' >tools/$t; chmod +x "
+	    "tools/$t; done\n"
+	    "PATH=$PWD/tools:$PATH PKG_CONFIG=pkg-config \"$ROOT/scripts/setup.sh\" note",
+	    0);
+	assert_string_equal(last.err, "");
+	run("printf '#!/bin/sh\nexit 1\n' >tools/pkg-config\n"
+	    "PATH=$PWD/tools:$PATH PKG_CONFIG=pkg-config \"$ROOT/scripts/setup.sh\" note",
+	    0);
+	assert_string_equal(last.err, "setup: going on without libpng-dev (pictures as PNG)\n");
+	/* make says it as well. */
+	run("make -n -s -C \"$ROOT\" BUILD=$(dirname \"$STDFIT\") MAKELEVEL=0 all | grep -c 'setup.sh note'", 0);
+}
+
 static int set_up(void **state)
 {
 	char *root = realpath(".", NULL);
@@ -230,6 +247,7 @@ int main(void)
 		cmocka_unit_test(examples_with_the_static_library),
 		cmocka_unit_test(it_installs_below_another_root),
 		cmocka_unit_test(the_tarball_holds_what_git_knows),
+		cmocka_unit_test(what_is_left_out_is_told),
 		cmocka_unit_test(uninstalling_leaves_what_was_not_installed),
 	};
 	return cmocka_run_group_tests(tests, set_up, leave_directory);

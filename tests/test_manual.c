@@ -174,6 +174,8 @@ static void bash_completes_as_typed(void **state)
 	bash_completes("stdfit x.binary -o ''", "");
 	bash_completes("stdfit merge --sh", "");
 	bash_completes("stdfit fit --sh", "--shard");
+	bash_completes("stdfit ndf hyp", "hyper-cauchy");
+	bash_completes("stdfit sample ell", "ellipsoid");
 	unlink("compass.binary");
 }
 

@@ -4,7 +4,8 @@
 #include "run_program.h"
 
 /* A fit that takes a moment: few free parameters, few entries. */
-#define CHEAP "--ndf ggx,beckmann --sigma 0.2 --ior 1.5 --max-theta 20"
+#define SHAPE "--sigma 0.2 --ior 1.5 --max-theta 20"
+#define CHEAP "--ndf ggx,beckmann " SHAPE
 
 /* Seven good files, one of them with a difficult name, and a bad one; whole.csv, the table of one run. */
 static int set_up(void **state)
@@ -149,6 +150,9 @@ static void a_share_may_be_empty(void **state)
 	stdfit("all nowhere " CHEAP " --shard 1/1");
 	expect_error(1, "cannot read 'nowhere'");
 	assert_string_equal(last.out, "");
+	shell("ln -s nowhere gone; exec \"$STDFIT\" all gone " CHEAP " --shard 1/1");
+	expect_error(1, "cannot read 'gone': No such file");
+	assert_string_equal(last.out, "");
 	shell("mkdir bare; exec \"$STDFIT\" all bare " CHEAP " --shard 1/1");
 	expect_error(1, "cannot read 'bare'");
 	assert_string_equal(last.out, "");
@@ -178,7 +182,7 @@ static void tables_that_do_not_go_together_are_refused(void **state)
 	       "'gray-2.csv' row 1: made with other options than 'p-1.csv' row 1: with 'gray=yes'");
 	shell("sed 's/ seed=0//' p-2.csv >less.csv");
 	refuse("p-1.csv less.csv", "made with other options than 'p-1.csv' row 1: without 'seed=0'");
-	fit_shards("ggx", 3, CHEAP " --ndf ggx");
+	fit_shards("ggx", 3, "--ndf ggx " SHAPE);
 	refuse("ggx-1.csv p-2.csv", " for beckmann, as in 'p-2.csv' row 1: another --ndf");
 	refuse("p-2.csv ggx-1.csv", " for beckmann, as in 'p-2.csv' row 1: another --ndf");
 	shell("sed 's/," STDFIT_VERSION ",/,9.8.7,/' p-2.csv >future.csv");

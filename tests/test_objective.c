@@ -251,6 +251,80 @@ static void thinned_tables_estimate_the_error(void **state)
 	measurement_free(&measurement);
 }
 
+/* The coefficients of a model's own table, of all terms that the options have, at its own shape. */
+static void check_solved(const struct cook_torrance *truth, const struct fit_options *o, const char *label)
+{
+	const struct shape shape = shape_of(truth);
+	struct measurement measurement = make_sparse_table(truth, 180, BINS_NODE, 0, 6);
+	struct cook_torrance found = *truth;
+	struct geometry geometry;
+	struct sample_set full;
+	struct objective objective;
+	struct linear linear;
+
+	assert_int_equal(geometry_init(&geometry, 180, o), STATUS_OK);
+	assert_int_equal(sample_set_init(&full, &geometry, &measurement, 2), STATUS_OK);
+	assert_int_equal(objective_init(&objective, &full, o, truth->ndf.class, 1, MASKING_FINE), STATUS_OK);
+	check_between(objective_eval(&objective, &shape, 1e-7, true, &linear), 0, 1e-6, label);
+	assert_true(linear.lower_bound <= linear.error);
+	linear_set_model(&linear, o, &found);
+	for (int c = 0; c < 3; c++) {
+		check_abs(found.kd[c], truth->kd[c], 1e-4, label);
+		check_abs(found.ks[c], truth->ks[c], 1e-4, label);
+		check_abs(found.kg[c], truth->kg[c], 1e-4, label);
+		check_abs(found.ks_second[c], truth->ks_second[c], 1e-4, label);
+		for (int i = 0; i < F82_PARTS && truth->fresnel == FRESNEL_F82; i++)
+			check_abs(found.reflectance[c][i], truth->reflectance[c][i], 1e-3, label);
+	}
+	objective_free(&objective);
+	sample_set_free(&full);
+	geometry_free(&geometry);
+	measurement_free(&measurement);
+}
+
+static void the_coefficients_of_every_term_come_back(void **state)
+{
+	const struct cook_torrance plain = make_model("std", 0.2, 2.5, 1.6);
+	struct fit_options o = options_with(GAF_UNCORRELATED, WEIGHT_SOLID_ANGLE, BINS_NODE, 90);
+	struct cook_torrance truth = plain;
+
+	(void)state;
+	for (int c = 0; c < 3; c++)
+		truth.ks[c] = 0.6;
+	o.gray_specular = true;
+	check_solved(&truth, &o, "a coloured kd beside one ks");
+
+	truth = plain;
+	o.gray_specular = false;
+	o.lobes = 2;
+	o.grazing = true;
+	truth.grazing = 3;
+	assert_int_equal(ndf_init(&truth.second, truth.ndf.class, 0.04, 0.04, 1.8), STATUS_OK);
+	for (int c = 0; c < 3; c++) {
+		truth.kg[c] = 0.1 * (c + 1);
+		truth.ks_second[c] = 0.3 / (c + 1);
+	}
+	check_solved(&truth, &o, "two lobes and a grazing term");
+
+	truth = plain;
+	o.lobes = 1;
+	o.grazing = false;
+	o.fresnel = truth.fresnel = FRESNEL_F82;
+	for (int c = 0; c < 3; c++) {
+		truth.ks[c] = 1;
+		truth.reflectance[c][0] = 0.9 - 0.2 * c;
+		truth.reflectance[c][1] = 0.8 - 0.1 * c;
+		truth.reflectance[c][2] = 0.95;
+	}
+	check_solved(&truth, &o, "f82");
+	o.grazing = true;
+	truth.grazing = 5;
+	check_solved(&truth, &o, "f82 and a grazing term that is not there");
+	/* More than there are places for. */
+	o.lobes = 2;
+	assert_int_equal(term_list_of(&o).n, 0);
+}
+
 /* Of the table in this unit: E, kd and ks of a shape; how many values of the sample set are no normal floats. */
 static struct linear solve_in_unit(const struct measurement *measurement, const struct geometry *geometry,
 				   const struct fit_options *o, double unit, size_t *denormal)
@@ -326,6 +400,7 @@ int main(void)
 		cmocka_unit_test(kernel_and_metrics_match_the_reference),
 		cmocka_unit_test(entries_above_the_horizon),
 		cmocka_unit_test(thinned_tables_estimate_the_error),
+		cmocka_unit_test(the_coefficients_of_every_term_come_back),
 		cmocka_unit_test(faint_tables_are_fitted_in_a_unit_of_their_own),
 		cmocka_unit_test(nothing_to_fit_is_said),
 	};

@@ -401,6 +401,20 @@ static void rows_that_contradict_each_other(void **state)
 	expect_error(1, "'odd.csv' rows 1 and 2, of the same fit, differ in error");
 	stdfit("plot odd.csv -o odd_plots");
 	expect_error(1, "'odd.csv' rows 1 and 2, of the same fit, differ in error");
+	/* No command takes one of the two silently; --row says which. */
+	static const char *const from[] = {"eval a.binary --from odd.csv",
+					   "export a.binary --from odd.csv --format json",
+					   "render a.binary b.binary --from odd.csv " QUICK,
+					   "render odd.csv " QUICK,
+					   "ndf --from odd.csv --theta 0",
+					   "sample --from odd.csv"};
+	for (size_t i = 0; i < sizeof from / sizeof *from; i++) {
+		stdfit(from[i]);
+		expect_error(1, "'odd.csv' rows 1 and 2, of the same fit, differ in error");
+		assert_string_equal(last.out, "");
+	}
+	stdfit("eval a.binary --from odd.csv --row 2");
+	expect_code(0);
 	/* Another file's: they stay, and are named. */
 	stdfit("b.binary " CHEAP " --resume -o odd.csv");
 	expect_error(0, "'odd.csv' rows 1 and 2, of the same fit, differ in error: such fits are made again");

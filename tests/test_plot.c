@@ -186,16 +186,23 @@ static void slices_are_the_table(void **state)
 	(void)state;
 	double m[3], f[3];
 	for (int i = 0; i < 90; i += 11) {
-		slice_measured(&measured_table, i, 45, m);
-		slice_model(&table_model, BINS_NODE, i, 45, f);
+		slice_measured(&measured_table, SLICE_ACROSS, i, 45, m);
+		slice_model(&table_model, BINS_NODE, SLICE_ACROSS, i, 45, f);
 		for (int c = 0; c < 3; c++)
 			check_rel(m[c], f[c], NOISE, "slice");
 	}
-	slice_measured(&measured_table, 45, 0, m);
+	slice_measured(&measured_table, SLICE_ACROSS, 45, 0, m);
 	check_rel(m[1], (double)measured_table.value[1][90 + 180 * 90 * 45], 0, "where a slice lies");
 	mask_entry(&measured_table, 3, 45, 90);
-	slice_measured(&measured_table, 3, 45, m);
+	slice_measured(&measured_table, SLICE_ACROSS, 3, 45, m);
 	assert_true(isnan(m[0]) && isnan(m[2]));
+	/* In the mirror plane, where what is below the horizon has no value. */
+	slice_measured(&measured_table, SLICE_IN_PLANE, 45, 30, m);
+	check_rel(m[1], (double)measured_table.value[1][180 * (90 * 45 + 30)], 0, "where the other slice lies");
+	slice_model(&table_model, BINS_NODE, SLICE_IN_PLANE, 45, 30, f);
+	check_rel(m[1], f[1], NOISE, "slice in the mirror plane");
+	slice_model(&table_model, BINS_NODE, SLICE_IN_PLANE, 80, 30, f);
+	assert_true(isnan(f[0]) && isnan(f[2]));
 }
 
 static void names_are_harmless_in_scripts(void **state)
@@ -222,9 +229,10 @@ static void expect_files(const char *directory, const char *const *name, bool th
 	}
 }
 
-static const char *const sources[] = {"map.csv",    "map.gp", "ndf_D.csv", "ndf_G1.csv",
-				      "slices.csv", "ndf.gp", "slices.gp", NULL};
-static const char *const pictures[] = {"map.png", "map.svg", "ndf.png", "ndf.svg", "slices.png", "slices.svg", NULL};
+static const char *const sources[] = {"map.csv", "map.gp",    "ndf_D.csv",   "ndf_G1.csv", "slices.csv",
+				      "ndf.gp",  "slices.gp", "slices_0.gp", NULL};
+static const char *const pictures[] = {"map.png",    "map.svg",      "ndf.png",      "ndf.svg", "slices.png",
+				       "slices.svg", "slices_0.png", "slices_0.svg", NULL};
 static const char *const errors_sources[] = {"errors.csv", "errors.gp", NULL};
 static const char *const errors_pictures[] = {"errors.png", "errors.svg", NULL};
 
@@ -441,6 +449,11 @@ static void files_are_fitted_first(void **state)
 	expect_error(1, "gnuplot is not installed");
 	expect_files("new/x_y", sources, true);
 	expect_files("new/x_y-2", sources, true);
+	/* No line joins materials; curves differ in their dashes, too. */
+	shell("grep -c 'with points' new/errors.gp; grep -c 'with lines' new/errors.gp");
+	assert_string_equal(last.out, "1\n0\n");
+	shell("grep -c 'dt 2 .*\"\\?.ggx.*dt 3 .*beckmann' new/x_y/slices.gp new/x_y/slices_0.gp");
+	assert_string_equal(last.out, "new/x_y/slices.gp:18\nnew/x_y/slices_0.gp:18\n");
 	/* Why one has no fit is told once. */
 	write_text("text.binary", "text\n");
 	stdfit("plot text.binary -o none " CHEAP);

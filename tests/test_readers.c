@@ -599,6 +599,39 @@ static void alta_half_and_difference_angles_are_understood(void **state)
 	measurement_free(&m);
 }
 
+/* Each row has the cosines with the normal and between the half vector and wi that its name says. */
+static void alta_cosines_and_fewer_angles_are_understood(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *text;
+		double theta_h, theta_d, wo_z;
+		enum symmetry symmetry;
+	} rows[] = {
+		{"#DIM 1 1\n#PARAM_IN COS_TH\n#PARAM_OUT INV_STERADIAN\n0.8 1\n", 0.6435011087932844, 0, 0.8,
+		 SYMMETRY_ISOTROPIC},
+		{"#DIM 2 1\n#PARAM_IN COS_TH_TD\n#PARAM_OUT INV_STERADIAN\n0.8 0.96 1\n", 0.6435011087932844,
+		 0.2837941092083278, NAN, SYMMETRY_ISOTROPIC},
+		{"#DIM 2 1\n#PARAM_IN RUSIN_TH_TD\n#PARAM_OUT INV_STERADIAN\n0.3 0.7 1\n", 0.3, 0.7, 0.7306816499355124,
+		 SYMMETRY_ISOTROPIC},
+		{"#DIM 3 1\n#PARAM_IN RUSIN_TH_PH_TD\n#PARAM_OUT INV_STERADIAN\n0.3 0 0.4 1\n0.3 2 0.4 1\n", 0.3, 0.4,
+		 NAN, SYMMETRY_ANISOTROPIC},
+		{"#DIM 2 1\n#PARAM_IN ISOTROPIC_TV_PROJ_DPHI\n#PARAM_OUT INV_STERADIAN\n0.3 0.4 1\n", 0.25, 0.25,
+		 0.8775825618903728, SYMMETRY_ISOTROPIC},
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		struct measurement m = read_text("x.dat", rows[i].text);
+		const struct vec3 wi = m.scattered->wi[0], wo = m.scattered->wo[0], h = vec3_unit(vec3_add(wi, wo));
+
+		check_abs(h.z, cos(rows[i].theta_h), 1e-9, rows[i].text);
+		check_abs(vec3_dot(h, wi), cos(rows[i].theta_d), 1e-9, rows[i].text);
+		if (!isnan(rows[i].wo_z))
+			check_abs(wo.z, rows[i].wo_z, 1e-9, rows[i].text);
+		assert_int_equal(m.scattered->symmetry, rows[i].symmetry);
+		measurement_free(&m);
+	}
+}
+
 static void alta_values_are_divided_by_the_cosine_of_the_view(void **state)
 {
 	(void)state;
@@ -618,7 +651,10 @@ static void bad_alta_is_refused_with_its_line(void **state)
 {
 	(void)state;
 	static const struct refusal refusals[] = {
-		{"#DIM 2 1\n#PARAM_IN COS_TH_TD\n", "line 2: expected PARAM_IN SPHERICAL_TL_PL_TV_PV"},
+		{"#DIM 2 1\n#PARAM_IN STARK_2D\n",
+		 "line 2: expected PARAM_IN SPHERICAL_TL_PL_TV_PV, ISOTROPIC_TV_TL_DPHI, ISOTROPIC_TL_TV_PROJ_DPHI, "
+		 "RUSIN_TH_TD_PD, RUSIN_TH_PH_TD_PD, CARTESIAN, COS_TH, COS_TH_TD, RUSIN_TH_TD, RUSIN_TH_PH_TD, "
+		 "ISOTROPIC_TV_PROJ_DPHI, found 'STARK_2D'"},
 		{"#DIM 3 1\n#PARAM_IN CARTESIAN\n#PARAM_OUT INV_STERADIAN\n1 2 3 4\n",
 		 "line 4: expected DIM 6 for CARTESIAN, found 3"},
 		{"#DIM 7 1\n", "line 1: expected DIM with 1 to 6 coordinates"},
@@ -842,6 +878,7 @@ int main(void)
 		cmocka_unit_test(many_lines_are_read),
 		cmocka_unit_test(alta_coordinates_are_one_pair_of_directions),
 		cmocka_unit_test(alta_half_and_difference_angles_are_understood),
+		cmocka_unit_test(alta_cosines_and_fewer_angles_are_understood),
 		cmocka_unit_test(alta_values_are_divided_by_the_cosine_of_the_view),
 		cmocka_unit_test(bad_alta_is_refused_with_its_line),
 		cmocka_unit_test(cornell_rows_are_spectra),

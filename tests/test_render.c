@@ -475,7 +475,7 @@ static void tables_are_interpolated(void **state)
 				measurement.value[1][e] = measurement.value[0][e] = measurement.value[2][e] =
 					(float)smooth_value(
 						bins_angles((enum bins)b, e / n_phi / 90, e / n_phi % 90, e % n_phi));
-			assert_int_equal(measured_init(&measured, &measurement, (enum bins)b), STATUS_OK);
+			assert_int_equal(measured_init(&measured, &measurement, (enum bins)b, 1), STATUS_OK);
 			uint64_t seed = 1;
 			for (int n = 0; n < 3000; n++) {
 				const bool at_entry = n % 2;
@@ -516,14 +516,14 @@ static void gaps_take_their_neighbours_value(void **state)
 			for (int k = 0; k < 180; k++)
 				for (int c = 0; c < 3 && !(i == 5 && k == 7); c++)
 					measurement.value[c][measurement_at(180, i, j, k)] = (float)(1 + j + 10 * i);
-	assert_int_equal(measured_init(&measured, &measurement, BINS_NODE), STATUS_OK);
+	assert_int_equal(measured_init(&measured, &measurement, BINS_NODE, 1), STATUS_OK);
 	assert_true(measured.value[3 * measurement_at(180, 20, 40, 100)] == 204.0F);
 	assert_true(measured.value[3 * measurement_at(180, 5, 2, 7) + 1] == 41.0F);
 	measured_free(&measured);
 	measurement_free(&measurement);
 	/* Below the horizon there is nothing. */
 	assert_int_equal(measurement_alloc(&measurement, 180), STATUS_OK);
-	assert_int_equal(measured_init(&measured, &measurement, BINS_NODE), STATUS_OK);
+	assert_int_equal(measured_init(&measured, &measurement, BINS_NODE, 1), STATUS_OK);
 	double f[3] = {1, 1, 1};
 	measured_f(&measured, (struct vec3){0, 0, 1}, (struct vec3){1, 0, -1e-9}, f);
 	assert_true(f[0] == 0 && f[1] == 0 && f[2] == 0);
@@ -557,6 +557,45 @@ static void formula_and_table_make_one_picture(void **state)
 			pictures_free(&pictures);
 			measurement_free(&measurement);
 		}
+	environment_free(&light);
+}
+
+/* The light of a pixel of a sphere that a lamp lights, from its normal: x to the right, y to the upper pole. */
+static double lit(const struct cook_torrance *model, int size, int px, int py, struct vec3 to)
+{
+	const double radius = size * 0.48, right = (px + 0.5 - size * 0.5) / radius,
+		     up = (size * 0.5 - py - 0.5) / radius;
+	const struct vec3 n = {right, up, sqrt(1 - right * right - up * up)};
+	const struct vec3 pole = {0, 1, 0}, y = vec3_unit(vec3_sub(pole, vec3_scale(n, n.y))), eye = {0, 0, 1};
+	const struct vec3 x = {y.y * n.z - y.z * n.y, y.z * n.x - y.x * n.z, y.x * n.y - y.y * n.x};
+	const struct vec3 wi = {vec3_dot(x, to), vec3_dot(y, to), vec3_dot(n, to)};
+	const struct vec3 wo = {vec3_dot(x, eye), vec3_dot(y, eye), vec3_dot(n, eye)};
+	double f[3];
+	assert_true(x.x > 0);
+	cook_torrance_f(model, wi, wo, f);
+	return f[1] * wi.z;
+}
+
+static void tangents_point_to_the_right_and_up(void **state)
+{
+	(void)state;
+	enum { SIZE = 100 };
+	static const int pixel[][2] = {{50, 50}, {70, 40}, {30, 45}, {60, 75}, {52, 10}, {85, 50}};
+	const struct light lamp = {.to = vec3_unit((struct vec3){0.5, 0.3, 0.8}), .irradiance = {1, 1, 1}};
+	struct environment light;
+	struct cook_torrance model = make_model("ggx", 0.3, 2, 1.5);
+	assert_int_equal(ndf_init(&model.ndf, ndf_find("ggx"), 0.6, 0.2, 2), STATUS_OK);
+	assert_int_equal(ndf_turn(&model.ndf, 30), STATUS_OK);
+	environment_from_lights(&light, &lamp, 1);
+	struct surface surface = make_surface(&model, SAMPLING_VISIBLE);
+	struct sphere sphere = render_with(
+		&surface, &light, (struct sphere_options){.size = SIZE, .samples = 64, .tangents = true, .threads = 2});
+	for (size_t i = 0; i < sizeof pixel / sizeof *pixel; i++) {
+		const int x = pixel[i][0], y = pixel[i][1];
+		check_rel((double)image_at(&sphere.light, x, y)[1], lit(&model, SIZE, x, y, lamp.to), 0.01, "a pixel");
+	}
+	sphere_free(&sphere);
+	surface_free(&surface);
 	environment_free(&light);
 }
 
@@ -623,6 +662,7 @@ int main(void)
 		cmocka_unit_test(tables_are_interpolated),
 		cmocka_unit_test(gaps_take_their_neighbours_value),
 		cmocka_unit_test(formula_and_table_make_one_picture),
+		cmocka_unit_test(tangents_point_to_the_right_and_up),
 		cmocka_unit_test(errors_of_pictures),
 		cmocka_unit_test(built_in_light_is_of_one_brightness),
 	};

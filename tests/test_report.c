@@ -75,8 +75,8 @@ static void expect_in_page(const char *path, const char *part, bool there)
 /* Elements that stand in pairs do so, and the page is whole. */
 static void expect_whole(const char *path)
 {
-	static const char *const pair[] = {"details", "table", "tr",  "td",     "th",
-					   "figure",  "h3",    "div", "script", "span"};
+	static const char *const pair[] = {"details", "table", "tr",      "td",     "th",
+					   "figure",  "h3",    "section", "script", "span"};
 	char *page = slurp(path);
 	for (size_t p = 0; p < sizeof pair / sizeof *pair; p++) {
 		char opening[16], closing[16];
@@ -127,9 +127,15 @@ static void a_table_becomes_a_page(void **state)
 	expect_in_page(page, "gaf=uncorrelated", true);
 	expect_in_page(page, "fitted by stdfit</dt><dd>" STDFIT_VERSION, true);
 	expect_in_page(page, "Pictures are missing", !image_has_png());
-	expect_in_page(page, ": spheres in the same light", image_has_png());
+	expect_in_page(page, ": sphere, as measured.", image_has_png());
 	expect_in_page(page, "Spheres in the same light (studio; 1 samples a pixel)", image_has_png());
 	expect_in_page(page, "Mean CIEDE2000 and SSIM: beckmann ", image_has_png());
+	/* Angles are set as angles, parameters come as options. */
+	expect_in_page(page, "\xcf\x86<sub>d</sub> = 90", true);
+	expect_in_page(page, "\xce\xb8_", false);
+	expect_in_page(page,
+		       " data-options=\"--ndf ggx --gaf uncorrelated --fresnel dielectric --sigma 0.2 --ior 1.5 --kd ",
+		       true);
 }
 
 static void a_browser_shows_it_without_errors(void **state)
@@ -159,6 +165,27 @@ static void files_are_fitted_first(void **state)
 	expect_code(0);
 	shell("cmp new/index.html again/index.html");
 	expect_code(0);
+	expect_in_page("new/index.html", "weight=solid-angle", true);
+	/* What the button copies gives the model of the row to eval. */
+	shell("set -- $(sed -n 's/.*<tr data-options=\"\\([^\"]*\\)\".*/\\1/p' new/index.html | head -n 1); [ $# -ge "
+	      "14 ] && "
+	      "\"$STDFIT\" eval a.binary \"$@\" --max-theta 20 | tail -n 1 | cut -d, -f3-5; cut -d, -f2,25-27 "
+	      "new/fits.csv | sed -n "
+	      "'s/^ggx,//p'");
+	expect_code(0);
+	char *second = strchr(last.out, '\n');
+	assert_non_null(second);
+	*second++ = '\0';
+	second[strcspn(second, "\n")] = '\0';
+	assert_string_equal(last.out, second);
+	stdfit("report a.binary -o told " SPHERES " " CHEAP);
+	drop_no_png();
+	expect_error(0, "fitted under --weight solid-angle");
+	stdfit("report a.binary --weight none -o named " SPHERES " " CHEAP);
+	expect_code(0);
+	drop_no_png();
+	assert_string_equal(last.err, "");
+	expect_in_page("named/index.html", "weight=none", true);
 	expect_whole("new/index.html");
 	expect_in_page("new/index.html", "<title>stdfit: fits of a</title>", true);
 	/* Why one has no fit is told once, and in the page. */
@@ -167,6 +194,30 @@ static void files_are_fitted_first(void **state)
 	expect_error(1, "cannot read 'text.binary'");
 	expect_whole("none/index.html");
 	expect_in_page("none/index.html", "failed: cannot read", true);
+}
+
+/* Where another weight would look much better the page says so, unless it has that fit, too; so does fit on a terminal. */
+static void another_weight_is_hinted_at(void **state)
+{
+	(void)state;
+	shell("\"$STDFIT\" synth noisy.binary --ndf ggx --sigma 0.2 --kd 0.3,0.2,0.1 --ks 0.5 --noise 0.5 && "
+	      "\"$STDFIT\" "
+	      "noisy.binary a.binary " CHEAP
+	      " --weight none,solid-angle -o hints.csv && grep -v solid-angle, hints.csv >hint.csv && "
+	      "for t in hint hints; do PATH=/nowhere \"$STDFIT\" report $t.csv -o $t -q " SPHERES "; done");
+	shell("grep -c 'class=.hint' hint/index.html; grep -c 'class=.hint' hints/index.html");
+	assert_string_equal(last.out, "1\n0\n");
+	expect_in_page("hints/index.html", "<th scope=\"row\">ggx, solid-angle</th>", true);
+	expect_in_page("hint/index.html", "<th scope=\"row\">ggx</th>", true);
+	shell("command -v script");
+	if (last.code)
+		skip_for_want_of("script, of bsdutils");
+	shell("for w in none none,solid-angle; do script -qec \"'$STDFIT' noisy.binary a.binary " CHEAP
+	      " --weight $w\" /dev/null </dev/null | grep -c 'hint: with --weight solid-angle the pictures of .noisy. "
+	      "'; done");
+	assert_string_equal(last.out, "1\n0\n");
+	stdfit("noisy.binary " CHEAP);
+	assert_string_equal(last.err, "");
 }
 
 static void without_gnuplot(void **state)
@@ -233,29 +284,29 @@ static void many_materials_have_a_page_each(void **state)
 	(void)state;
 	shell("awk 'NR == 2 { for (i = 1; i <= 3000; i++) { r = $0; sub(/,a[.]binary,/, \",no/\" i \".binary,\", r); "
 	      "print r } "
-	      "} NR == 1' fits.csv >most.csv; { head -n 151 most.csv; sed -n '152s/^a,/A-2,/p' most.csv; } >many.csv");
+	      "} NR == 1' fits.csv >most.csv; { head -n 51 most.csv; sed -n '52s/^a,/A-2,/p' most.csv; } >many.csv");
 	stdfit("report many.csv -o many --size 16 -q");
 	assert_int_equal(last.code, 1); /* no picture: there are no such files */
 	expect_nothing_left();
 	const char *page = "many/index.html";
-	expect_in_page(page, "<title>stdfit: fits of 151 materials</title>", true);
+	expect_in_page(page, "<title>stdfit: fits of 51 materials</title>", true);
 	expect_in_page(page, "<a href=\"materials/a.html\">a</a>", true);
 	expect_in_page(page, "<a href=\"materials/A-2.html\">A-2</a>", true);
 	expect_in_page(page, "<a href=\"materials/a-2.html\">", false);
 	expect_in_page(page, "<a href=\"materials/a-3.html\">a</a>", true);
-	expect_in_page(page, "<a href=\"materials/a-151.html\">a</a>", true);
+	expect_in_page(page, "<a href=\"materials/a-51.html\">a</a>", true);
 	expect_in_page(page, "<details", false);
-	page = "many/materials/a-151.html";
+	page = "many/materials/a-51.html";
 	expect_whole(page);
 	expect_in_page(page, "<title>stdfit: fits of a</title>", true);
-	expect_in_page(page, "<a href=\"../index.html\">All 151 materials</a>", true);
-	expect_in_page(page, "id=\"m-a-151\" open>", true);
+	expect_in_page(page, "<a href=\"../index.html\">All 51 materials</a>", true);
+	expect_in_page(page, "id=\"m-a-51\" open>", true);
 	shell("ls many/materials | wc -l");
-	assert_int_equal(atoi(last.out), 151);
+	assert_int_equal(atoi(last.out), 51);
 	/* One less stands in one file. */
 	shell("sed -i '$d' many.csv; rm -r many; exec \"$STDFIT\" report many.csv -o many --size 16 -q");
 	expect_whole("many/index.html");
-	expect_in_page("many/index.html", "id=\"m-a-150\">", true);
+	expect_in_page("many/index.html", "id=\"m-a-50\">", true);
 	shell("[ ! -e many/materials ]");
 	expect_code(0);
 	/* That equal names are told apart takes no 15 s of processor time, after which the system ends the program. */
@@ -310,6 +361,7 @@ int main(void)
 		cmocka_unit_test(a_table_becomes_a_page),
 		cmocka_unit_test(a_browser_shows_it_without_errors),
 		cmocka_unit_test(files_are_fitted_first),
+		cmocka_unit_test(another_weight_is_hinted_at),
 		cmocka_unit_test(without_gnuplot),
 		cmocka_unit_test(what_is_missing_is_told),
 		cmocka_unit_test(wrong_input_is_refused),

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fits of scattered entries: known parameters come back, isotropic and with axes, and richer models never lose. */
 #include "check.h"
+#include "fit/error/sample_set.h"
 #include "fit/search/fit.h"
 #include "fit/search/options_check.h"
 #include "fit/search/within.h"
@@ -287,6 +288,45 @@ static void a_table_of_nodes_is_below_std(void **state)
 	measurement_free(&measurement);
 }
 
+/* How many values of the sample set are no normal floats: arithmetic on them is a hundred times slower. */
+static size_t denormal_values(const struct measurement *measurement, const struct fit_options *options)
+{
+	struct geometry geometry;
+	struct sample_set set;
+	size_t count = 0;
+
+	assert_int_equal(geometry_init(&geometry, measurement->n_phi_d, options), STATUS_OK);
+	assert_int_equal(sample_set_init(&set, &geometry, measurement, 1), STATUS_OK);
+	for (size_t v = 0; v < (size_t)set.n_blocks * MERL_CHANNELS * KERNEL_BLOCK; v++)
+		count += set.value[v] != 0 && !isnormal(set.value[v]);
+	sample_set_free(&set);
+	geometry_free(&geometry);
+	return count;
+}
+
+/* Values near the least normal float: in a unit of their own they cost what others cost, and end where they do. */
+static void faint_values_are_fitted_in_a_unit_of_their_own(void **state)
+{
+	const struct cook_torrance truth = make_model("ggx", 0.2, 2, 1.5);
+	struct fit_options options = options_for("ggx", false);
+	struct measurement measurement = make_scattered(&truth, 20000, 0.05, 5);
+	struct fit_result r, same;
+
+	(void)state;
+	options.ior = 1.5;
+	options.criterion.weight = WEIGHT_SOLID_ANGLE; /* denormal products */
+	run(&measurement, &options, &r);
+	for (size_t n = 0; n < measurement.scattered->n; n++)
+		for (int c = 0; c < MERL_CHANNELS; c++)
+			measurement.scattered->value[c][n] *= 0x1p-120F;
+	assert_int_equal(denormal_values(&measurement, &options), 0);
+	run(&measurement, &options, &same);
+	check_rel(same.error, r.error, 1e-6, "E of faint values");
+	check_rel(same.model.kd[0] * 0x1p120, r.model.kd[0], 1e-3, "their kd");
+	check_rel(same.model.ks[0] * 0x1p120, r.model.ks[0], 1e-3, "their ks");
+	measurement_free(&measurement);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -294,6 +334,7 @@ int main(void)
 		cmocka_unit_test(few_entries_of_a_goniometer),
 		cmocka_unit_test(a_table_is_isotropic),
 		cmocka_unit_test(what_makes_no_anisotropic_fit),
+		cmocka_unit_test(faint_values_are_fitted_in_a_unit_of_their_own),
 	};
 	const struct CMUnitTest long_tests[] = {
 		cmocka_unit_test(isotropic_parameters_come_back), cmocka_unit_test(what_is_fixed_stays),

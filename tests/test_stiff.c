@@ -356,6 +356,61 @@ static void stiff_tables_end_at_their_minimum(void **state)
 	}
 }
 
+/* A painted metal: two lobes, one narrow and one wide, under noise of 15 %; of the entries near grazing a share `spiked` is 10 to
+ * 100 times too large. */
+static struct measurement painted(unsigned seed, double sigma, double n, double spiked)
+{
+	const struct cook_torrance wide = model_of("beckmann", sigma, INFINITY, n, 0.05, 0.1),
+				   narrow = model_of("ggx", 0.3 * sigma, 2, 1.5, 0, 0.06);
+	struct measurement a = table_of(&wide), b = table_of(&narrow);
+
+	for (size_t at = 0; at < measurement_count(&a); at++) {
+		const bool grazing = at / 180 % MERL_THETA_D >= 55;
+		const double noise_of = 1 + 0.26 * (2 * random_unit(&seed) - 1), u = random_unit(&seed);
+		const double spike = grazing && u < spiked ? pow(10, 1 + u / spiked) : 1;
+		for (int c = 0; c < MERL_CHANNELS; c++)
+			a.value[c][at] = (float)((double)(a.value[c][at] + b.value[c][at]) * noise_of * spike);
+	}
+	measurement_free(&b);
+	return a;
+}
+
+/* Nor does a grid of n, each held fixed, nor do random starts find anything lower. */
+static void no_n_and_no_start_ends_lower(void **state)
+{
+	static const double n_of[] = {1.2, 1.5, 2, 3, 4.5, 8, 12, 20, 50};
+	static const struct {
+		double sigma, n, max_theta, spiked;
+		enum weight weight;
+	} tables[] = {{0.05, 4.5, 60, 0, WEIGHT_NONE},
+		      {0.12, 13, 61.5, 1e-3, WEIGHT_SOLID_ANGLE},
+		      {0.3, 5, 62.5, 1e-2, WEIGHT_NONE},
+		      {0.02, 1.45, 63, 3e-3, WEIGHT_SOLID_ANGLE}};
+
+	(void)state;
+	for (size_t t = 0; t < sizeof tables / sizeof *tables; t++) {
+		struct measurement measurement =
+			painted((unsigned)t + 1, tables[t].sigma, tables[t].n, tables[t].spiked);
+		struct fit_options options = options_for("beckmann");
+		char label[64];
+
+		options.criterion.max_theta = tables[t].max_theta;
+		options.criterion.weight = tables[t].weight;
+		const double error = error_with(&measurement, &options);
+
+		options.starts = 20;
+		snprintf(label, sizeof label, "table %zu: random starts", t);
+		check_between(error / error_with(&measurement, &options) - 1, 0, 1e-6, label);
+		options.starts = 0;
+		for (size_t i = 0; i < sizeof n_of / sizeof *n_of; i++) {
+			options.ior = n_of[i];
+			snprintf(label, sizeof label, "table %zu: n = %g", t, n_of[i]);
+			check_between(error / error_with(&measurement, &options) - 1, -1, 1e-6, label);
+		}
+		measurement_free(&measurement);
+	}
+}
+
 /* One value next to the largest float: no metric overflows. */
 static void the_largest_value_overflows_no_metric(void **state)
 {
@@ -450,6 +505,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(stiff_tables_end_at_their_minimum),
+		cmocka_unit_test(no_n_and_no_start_ends_lower),
 		cmocka_unit_test(a_rounding_of_the_data_changes_nothing),
 		cmocka_unit_test(the_largest_value_overflows_no_metric),
 		cmocka_unit_test(the_unit_of_the_data_changes_nothing),

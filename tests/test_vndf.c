@@ -87,11 +87,12 @@ static int bin_of(const struct ndf *ndf, struct vec3 m)
 	return (i < BINS_V ? i : BINS_V - 1) * BINS_PHI + (j < BINS_PHI ? j : BINS_PHI - 1);
 }
 
-/* Integral of vndf_pdf() over one bin, n x n points. Since D cos dm = d(v^power) d(angle)/(2 pi), it is divided by
- * D cos, so that nothing here knows the distribution but through vndf_pdf(). */
+/* Integral of vndf_pdf(), below the horizon of vndf_pdf_inside(), over one bin, n x n points. Since D cos dm = d(v^power) d(angle)/(2 pi), it is divided by
+ * D cos, so that nothing here knows the distribution but through them. */
 static double bin_integral(const struct ndf *ndf, struct vec3 wi, int bin, const gsl_integration_glfixed_table *table)
 {
 	const int i = bin / BINS_PHI, j = bin % BINS_PHI;
+	double (*pdf)(const struct ndf *ndf, struct vec3 wi, struct vec3 m) = wi.z < 0.0 ? vndf_pdf_inside : vndf_pdf;
 	const double power = bin_power(ndf->gamma);
 	double sum = 0.0;
 	for (size_t k = 0; k < table->n; k++) {
@@ -103,8 +104,8 @@ static double bin_integral(const struct ndf *ndf, struct vec3 wi, int bin, const
 						      2.0 * M_PI * (j + 1) / BINS_PHI - M_PI, l, &angle, &w_angle,
 						      table);
 			const struct vec3 m = normal_at(ndf, v, angle);
-			sum += w * w_angle * vndf_pdf(ndf, wi, m) / (ndf_D(ndf, m) * m.z) * power *
-			       pow(v, power - 1.0) / (2.0 * M_PI);
+			sum += w * w_angle * pdf(ndf, wi, m) / (ndf_D(ndf, m) * m.z) * power * pow(v, power - 1.0) /
+			       (2.0 * M_PI);
 		}
 	}
 	return sum;
@@ -149,7 +150,7 @@ static void check_one_chi_square(const struct ndf *ndf, struct vec3 wi, void *co
 	uint64_t random = 17;
 	for (int i = 0; i < SAMPLES; i++) {
 		const double u1 = uniform(&random), u2 = uniform(&random);
-		count[bin_of(ndf, vndf_sample(ndf, wi, u1, u2))]++;
+		count[bin_of(ndf, (wi.z < 0.0 ? vndf_sample_inside : vndf_sample)(ndf, wi, u1, u2))]++;
 	}
 	for (int i = 0; i < BINS; i++) {
 		expected[i] = SAMPLES * bin_integral(ndf, wi, i, table);
@@ -165,6 +166,23 @@ static void samples_follow_pdf(void **state)
 	gsl_integration_glfixed_table *table = gsl_integration_glfixed_table_alloc(8);
 	assert_non_null(table);
 	for_grid(check_one_chi_square, table);
+	gsl_integration_glfixed_table_free(table);
+}
+
+/* From below the horizon, where each facet has to lean over wi. */
+static void samples_from_below_follow_pdf(void **state)
+{
+	(void)state;
+	const double below[] = {90.1, 104.0, 118.0};
+	gsl_integration_glfixed_table *table = gsl_integration_glfixed_table_alloc(14);
+	assert_non_null(table);
+	for (int i = 0; i < SUBJECTS; i++) {
+		const struct ndf ndf = ndf_make(subjects[i].name, i % 2 ? 0.7 : 0.31, 0.5, subjects[i].gamma);
+		const double theta = below[i % 3];
+		char label[64];
+		snprintf(label, sizeof(label), "%s gamma %g theta_i %g", subjects[i].name, subjects[i].gamma, theta);
+		check_one_chi_square(&ndf, vec3_from_spherical_deg(theta, 70.0), table, label);
+	}
 	gsl_integration_glfixed_table_free(table);
 }
 
@@ -236,6 +254,67 @@ static void quantiles_invert_the_cdf(void **state)
 		}
 	}
 	gsl_integration_workspace_free(workspace);
+}
+
+/* The same with c < 0: only slopes below c/s are seen, and of the steepest directions hardly any. */
+static void quantiles_from_below_invert_the_cdf(void **state)
+{
+	(void)state;
+	const double gammas[] = {1.61, 1.8, 2.5, 11.3, 900.0}, cots[] = {1e-9, 0.07, 0.4, 1.1, 2.0};
+	const double numbers[] = {1e-6, 0.03, 0.31, 0.77, 0.98, 1.0 - 1e-6};
+	gsl_integration_workspace *workspace = gsl_integration_workspace_alloc(1000);
+	assert_non_null(workspace);
+	for (int i = 0; i < 25; i++) {
+		const double gamma = gammas[i % 5], cot = cots[i / 5];
+		const struct ndf ndf = ndf_make("std", 1.0, 1.0, gamma);
+		const double sin_i = 1.0 / hypot(1.0, cot),
+			     lambda = ndf_lambda(&ndf, (struct vec3){sin_i, 0.0, cot * sin_i});
+		struct student seen = {gamma - 0.5, ndf.K, -cot * sin_i, sin_i * sqrt(gamma - 1.0)};
+		const double steep = -sqrt(60.0 / (seen.p - 1.0));
+		for (int u = 0; u < 6; u++) {
+			const double w = student_quantile(&seen, numbers[u]);
+			char label[96];
+			snprintf(label, sizeof(label), "gamma %g cot %g u %g", gamma, cot, numbers[u]);
+			check_abs(seen_mass(&seen, steep, w, workspace) / (cot * sin_i * lambda), numbers[u],
+				  1e-13 * (1.0 + 1.0 / lambda) + 1e-11 * numbers[u], label);
+			/* Its closed form */
+			const struct vndf_slopes ggx = vndf_ggx_slopes(seen.c, sin_i, numbers[u], 0.5, VNDF_GGX_EXACT);
+			const struct student as_ggx = {1.5, 0.5, seen.c, sin_i};
+			check_rel(ggx.x, -sqrt(expm1(pow(student_quantile(&as_ggx, numbers[u]), 2.0))), 1e-9, label);
+		}
+	}
+	gsl_integration_workspace_free(workspace);
+}
+
+/* Inside the surface the horizon is nothing special, above it all is as from outside, and straight down nothing is seen. */
+static void inside_joins_outside(void **state)
+{
+	(void)state;
+	uint64_t random = 4;
+	for (int i = 0; i < SUBJECTS; i++) {
+		const struct ndf ndf = ndf_make(subjects[i].name, 0.6, 0.3, subjects[i].gamma);
+		const struct vec3 over = vec3_from_spherical_deg(90.0 - 1e-9, 40.0), down = {0.0, 0.0, -1.0};
+		const struct vec3 under = {over.x, over.y, -over.z};
+		check_rel(vndf_area(&ndf, under), vndf_area(&ndf, over), 1e-9, "area");
+		for (int j = 0; j < 50; j++) {
+			const double u1 = uniform(&random), u2 = uniform(&random);
+			const struct vec3 wi = vec3_from_spherical_deg(90.0 * uniform(&random), 300.0);
+			const struct vec3 a = vndf_sample(&ndf, wi, u1, u2), b = vndf_sample_inside(&ndf, wi, u1, u2);
+			assert_true(a.x == b.x && a.y == b.y && a.z == b.z);
+			check_rel(vndf_pdf_inside(&ndf, wi, a), vndf_pdf(&ndf, wi, a), 1e-14, "pdf");
+			check_rel(vndf_area(&ndf, wi), wi.z / ndf_G1(&ndf, wi), 1e-14, "area");
+		}
+		assert_true(vndf_area(&ndf, down) == 0.0 && isnan(vndf_sample_inside(&ndf, down, 0.5, 0.5).z));
+		for (double theta = 91.0; theta < 178.0; theta += 5.0) {
+			const struct vec3 wi = vec3_from_spherical_deg(theta, 40.0);
+			for (int j = 0; j < EXTREME_NUMBERS * EXTREME_NUMBERS && vndf_area(&ndf, wi) > 0.0; j++) {
+				const struct vec3 m = vndf_sample_inside(&ndf, wi, extreme_numbers[j / EXTREME_NUMBERS],
+									 extreme_numbers[j % EXTREME_NUMBERS]);
+				check_unit(m.x, m.y, m.z, "from below");
+				check_between(vec3_dot(wi, m), -0x1p-52, 1.0, "a facet that faces wi");
+			}
+		}
+	}
 }
 
 /* The slope across wi, over sqrt(gamma-1+x^2), has the density Gamma(gamma)/(sqrt(pi) Gamma(gamma-1/2)) (1 +
@@ -455,8 +534,11 @@ int main(void)
 		cmocka_unit_test(pdf_matches_golden_rows),
 		cmocka_unit_test(slopes_match_golden_rows),
 		cmocka_unit_test(samples_follow_pdf),
+		cmocka_unit_test(samples_from_below_follow_pdf),
 		cmocka_unit_test(pdf_integrates_to_one),
 		cmocka_unit_test(quantiles_invert_the_cdf),
+		cmocka_unit_test(quantiles_from_below_invert_the_cdf),
+		cmocka_unit_test(inside_joins_outside),
 		cmocka_unit_test(slopes_across_invert_their_cdf),
 		cmocka_unit_test(quantiles_near_the_end_have_a_linear_weight),
 		cmocka_unit_test(std_at_2_is_ggx),

@@ -74,3 +74,15 @@ enum stdfit_status api_directions(const char *what, size_t n, const double *dire
 			return api_fail(error, STATUS_DOMAIN, "%s number %zu is no unit vector", what, i);
 	return STDFIT_OK;
 }
+
+enum stdfit_status api_pairs(size_t n, const double *wi, const double *wo, const double *out, const char *name,
+			     struct stdfit_error *error)
+{
+	enum stdfit_status status = api_directions("wi", n, wi, error);
+
+	if (status == STDFIT_OK)
+		status = api_directions("wo", n, wo, error);
+	if (status == STDFIT_OK && n > 0 && !out)
+		status = api_fail(error, STATUS_DOMAIN, "%s is NULL", name);
+	return status;
+}

@@ -37,9 +37,16 @@ MUST_CHECK enum stdfit_status api_bins(const char *name, enum bins *bins, struct
 /* api_directions - whether n directions are there and unit vectors. */
 MUST_CHECK enum stdfit_status api_directions(const char *what, size_t n, const double *directions,
 					     struct stdfit_error *error);
+/* api_pairs - whether n pairs of directions are there, and room for what is made of them: `out`, called `name`. */
+MUST_CHECK enum stdfit_status api_pairs(size_t n, const double *wi, const double *wo, const double *out,
+					const char *name, struct stdfit_error *error);
+/* api_numbers - whether n numbers are there and in [0, 1). */
+MUST_CHECK enum stdfit_status api_numbers(size_t n, const double *u, struct stdfit_error *error);
 /* api_class_ndf - the NDF as the models know it; STDFIT_UNSUPPORTED for those that they do not. */
 MUST_CHECK enum stdfit_status api_class_ndf(const struct stdfit_ndf *ndf, const struct ndf **inner,
 					    struct stdfit_error *error);
+/* api_index - whether n and k are in the range of this form of F. */
+MUST_CHECK enum stdfit_status api_index(enum fresnel fresnel, double n, double k, struct stdfit_error *error);
 /* api_model - a model, checked. */
 MUST_CHECK enum stdfit_status api_model(const struct stdfit_model *model, const struct stdfit_ndf *ndf,
 					struct cook_torrance *inner, struct stdfit_error *error);

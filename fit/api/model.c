@@ -12,7 +12,7 @@ struct stdfit_model stdfit_model_default(void)
 	return (struct stdfit_model){.n = 1.5, .ks = {1, 1, 1}};
 }
 
-static enum stdfit_status check_index(enum fresnel fresnel, double n, double k, struct stdfit_error *error)
+enum stdfit_status api_index(enum fresnel fresnel, double n, double k, struct stdfit_error *error)
 {
 	if (fresnel != FRESNEL_NONE && !(n > 0 && n <= INDEX_MAX))
 		return api_fail(error, STATUS_DOMAIN, "expected n in (0, %g], found %g", INDEX_MAX, n);
@@ -36,7 +36,7 @@ enum stdfit_status api_model(const struct stdfit_model *model, const struct stdf
 	if (status == STDFIT_OK)
 		status = api_fresnel(model->fresnel, &inner->fresnel, error);
 	if (status == STDFIT_OK)
-		status = check_index(inner->fresnel, model->n, model->k, error);
+		status = api_index(inner->fresnel, model->n, model->k, error);
 	for (int c = 0; c < 3 && status == STDFIT_OK; c++) {
 		inner->kd[c] = model->kd[c];
 		inner->ks[c] = model->ks[c];
@@ -63,11 +63,7 @@ enum stdfit_status stdfit_model_evaluate(const struct stdfit_model *model, const
 	enum stdfit_status status = api_model(model, ndf, &inner, error);
 
 	if (status == STDFIT_OK)
-		status = api_directions("wi", n, wi, error);
-	if (status == STDFIT_OK)
-		status = api_directions("wo", n, wo, error);
-	if (status == STDFIT_OK && n > 0 && !f)
-		status = api_fail(error, STATUS_DOMAIN, "f is NULL");
+		status = api_pairs(n, wi, wo, f, "f", error);
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
 		cook_torrance_f(&inner, api_vec(wi + 3 * i), api_vec(wo + 3 * i), f + 3 * i);
 	return status;
@@ -109,7 +105,7 @@ enum stdfit_status stdfit_fresnel(const char *fresnel, double cos_d, double n, d
 	enum stdfit_status status = api_fresnel(fresnel, &form, error);
 
 	if (status == STDFIT_OK)
-		status = check_index(form, n, k, error);
+		status = api_index(form, n, k, error);
 	if (status != STDFIT_OK)
 		return status;
 	if (!F || !(cos_d >= 0 && cos_d <= 1))
@@ -146,12 +142,8 @@ enum stdfit_status stdfit_angles_to_directions(size_t n, const double *angles, d
 enum stdfit_status stdfit_angles_from_directions(size_t n, const double *wi, const double *wo, double *angles,
 						 struct stdfit_error *error)
 {
-	enum stdfit_status status = api_directions("wi", n, wi, error);
+	const enum stdfit_status status = api_pairs(n, wi, wo, angles, "angles", error);
 
-	if (status == STDFIT_OK)
-		status = api_directions("wo", n, wo, error);
-	if (status == STDFIT_OK && n > 0 && !angles)
-		status = api_fail(error, STATUS_DOMAIN, "angles is NULL");
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++) {
 		const struct halfdiff a = halfdiff_from_dirs(api_vec(wi + 3 * i), api_vec(wo + 3 * i));
 

@@ -198,24 +198,27 @@ enum stdfit_status stdfit_ndf_G(const stdfit_ndf *ndf, const char *gaf, size_t n
 	if (status == STDFIT_OK)
 		status = api_gaf(gaf, &form, error);
 	if (status == STDFIT_OK)
-		status = api_directions("wi", n, wi, error);
-	if (status == STDFIT_OK)
-		status = api_directions("wo", n, wo, error);
-	if (status == STDFIT_OK && !G && n > 0)
-		status = api_fail(error, STATUS_DOMAIN, "G is NULL");
+		status = api_pairs(n, wi, wo, G, "G", error);
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
 		G[i] = gaf_G(form, inner, api_vec(wi + 3 * i), api_vec(wo + 3 * i));
 	return status;
 }
 
-static enum stdfit_status check_numbers(size_t n, const double *u, const double *out, struct stdfit_error *error)
+enum stdfit_status api_numbers(size_t n, const double *u, struct stdfit_error *error)
 {
-	if (n > 0 && (!u || !out))
-		return api_fail(error, STATUS_DOMAIN, "u or normals is NULL");
-	for (size_t i = 0; i < 2 * n; i++)
+	if (n > 0 && !u)
+		return api_fail(error, STATUS_DOMAIN, "u is NULL");
+	for (size_t i = 0; i < n; i++)
 		if (!(u[i] >= 0 && u[i] < 1))
 			return api_fail(error, STATUS_DOMAIN, "expected u in [0, 1), found %g", u[i]);
 	return STDFIT_OK;
+}
+
+static enum stdfit_status check_numbers(size_t n, const double *u, const double *normals, struct stdfit_error *error)
+{
+	if (n > 0 && !normals)
+		return api_fail(error, STATUS_DOMAIN, "normals is NULL");
+	return api_numbers(2 * n, u, error);
 }
 
 enum stdfit_status stdfit_ndf_sample(const stdfit_ndf *ndf, size_t n, const double *u, double *normals,

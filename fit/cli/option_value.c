@@ -74,7 +74,16 @@ const struct option_spec option_specs[] = {
 	 "form of Lambda of STD and its family; other NDFs have the exact one only", AT(fit.lambda), 0, 0},
 	{"fresnel", 0, KIND_FRESNEL, SEARCHES | MODEL | SOURCES, RECORDED, "NAME", "Fresnel term F", AT(fit.fresnel), 0,
 	 0},
-	{"weight", 0, KIND_WEIGHT, SEARCHES | SOURCES, RECORDED, "NAME", "how an entry counts in the error",
+	{"weight", 0, KIND_WEIGHTS, FIT, RECORDED, "LIST",
+	 "how an entry counts in the error; of several, separated by commas, each has fits of its own",
+	 AT(fit.criterion.weight), 0, 0},
+	{"weight", 0, KIND_WEIGHT, COMPARE | BENCH | DRAWS, NOT_RECORDED, "NAME", "how an entry counts in the error",
+	 AT(fit.criterion.weight), 0, 0},
+	{"weight", 0, KIND_WEIGHT, RENDER, NOT_RECORDED, "NAME",
+	 "how an entry counts in the error of a fit; with --from FILE.csv: only rows fitted so",
+	 AT(fit.criterion.weight), 0, 0},
+	{"weight", 0, KIND_WEIGHT, EXPORT, NOT_RECORDED, "NAME",
+	 "how an entry counts in the error of a fit, also of one in the place of a given model or row",
 	 AT(fit.criterion.weight), 0, 0},
 	{"bins", 0, KIND_BINS, SEARCHES | MODEL | SOURCES | INFO | CONVERT, RECORDED, "NAME",
 	 "where the entries of a table stand", AT(fit.criterion.bins), 0, 0},
@@ -101,7 +110,7 @@ const struct option_spec option_specs[] = {
 	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
 	{"sigma", 0, KIND_SIGMA, SEARCHES, RECORDED, "S|SX,SY", "fix the roughness; with --anisotropic along both axes",
 	 AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
-	{"anisotropic", 0, KIND_ON, AXES, RECORDED_ANISOTROPIC, NULL,
+	{"anisotropic", 0, KIND_ON, AXES | SOURCES, RECORDED_ANISOTROPIC, NULL,
 	 "scattered entries: search sigma_x, sigma_y and the angle of their axes, too, from the isotropic fit on",
 	 AT(fit.anisotropic), 0, 0},
 	{"angle", 0, KIND_NUMBER, AXES, RECORDED_ANISOTROPIC, "DEG",
@@ -130,16 +139,18 @@ const struct option_spec option_specs[] = {
 	{"seed", 0, KIND_SEED, SEARCHES, RECORDED, "N", "seed of the random shapes", AT(fit.seed), 0, 0},
 	{"within", 0, KIND_PERCENT, FIT, RECORDED_WITHIN, "P%",
 	 "per material only the simplest model whose error is within P% of the best", AT(within), 0, 1000},
-	{"sigma", 0, KIND_NUMBER, SYNTH, NOT_RECORDED, "S", "roughness", AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
-	{"sigma", 0, KIND_SIGMA, EVAL, NOT_RECORDED, "S|SX,SY", "roughness, along both axes if two", AT(fit.sigma),
+	{"sigma", 0, KIND_SIGMA, MODEL, NOT_RECORDED, "S|SX,SY", "roughness, along both axes if two", AT(fit.sigma),
 	 FIT_SIGMA_MIN, FIT_SIGMA_MAX},
-	{"angle", 0, KIND_NUMBER, EVAL, NOT_RECORDED, "DEG", "azimuth of the axis of SX; 0 if not given", AT(fit.angle),
-	 -360, 360},
+	{"angle", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "DEG", "azimuth of the axis of SX; 0 if not given",
+	 AT(fit.angle), -360, 360},
 	{"gamma", 0, KIND_GAMMA, MODEL, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann)",
 	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
 	{"ior", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "N", "index of refraction", AT(fit.ior), FIT_IOR_MIN, FIT_IOR_MAX},
-	{"sigma", 0, KIND_NUMBER, SOURCES, NOT_RECORDED, "S", "roughness: given with --ks, else fixed in the fit",
-	 AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
+	{"sigma", 0, KIND_SIGMA, SOURCES, NOT_RECORDED, "S|SX,SY",
+	 "roughness, along both axes if two: given with --ks, else fixed in the fit", AT(fit.sigma), FIT_SIGMA_MIN,
+	 FIT_SIGMA_MAX},
+	{"angle", 0, KIND_NUMBER, SOURCES, NOT_RECORDED, "DEG", "azimuth of the axis of SX, likewise", AT(fit.angle),
+	 -360, 360},
 	{"gamma", 0, KIND_GAMMA, SOURCES, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann), likewise",
 	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
 	{"ior", 0, KIND_NUMBER, SOURCES, NOT_RECORDED, "N", "index of refraction, likewise; with --ks 1.5 if not given",
@@ -198,6 +209,11 @@ const struct option_spec option_specs[] = {
 	{"seed", 0, KIND_SEED, RENDER, NOT_RECORDED, "N", "seed of the samples", AT(fit.seed), 0, 0},
 	{"difference", 0, KIND_ON, RENDER, NOT_RECORDED, NULL,
 	 "show differences in false colours for several materials, too", AT(difference), 0, 0},
+	{"transmission", 0, KIND_ON, RENDER, NOT_RECORDED, NULL,
+	 "instead of files a solid sphere of glass (--ior) with a rough surface (--sigma, --gamma), of each NDF",
+	 AT(transmission), 0, 0},
+	{"multiple", 0, KIND_ON, RENDER, NOT_RECORDED, NULL,
+	 "with --transmission: light also meets several facets of the surface", AT(multiple), 0, 0},
 	{NULL, 0, KIND_ON, 0, NOT_RECORDED, NULL, NULL, 0, 0, 0},
 };
 
@@ -216,6 +232,7 @@ const char *option_choice(enum option_kind kind, int i)
 	case KIND_FRESNEL:
 		return i < FRESNEL_COUNT ? fresnel_name((enum fresnel)i) : NULL;
 	case KIND_WEIGHT:
+	case KIND_WEIGHTS:
 		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
 	case KIND_BINS:
 		return i < BINS_COUNT ? bins_name((enum bins)i) : NULL;
@@ -431,6 +448,25 @@ static enum status parse_ndfs(const char *text, struct fit_options *fit, struct 
 	return STATUS_OK;
 }
 
+static enum status parse_weights(const char *text, struct options *options, struct error *error)
+{
+	char name[64];
+	int n = 0;
+	for (const char *rest = text; rest; n++) {
+		enum weight weight;
+		rest = next_item(rest, name, sizeof name);
+		if (weight_find(name, &weight) != STATUS_OK)
+			return expected_choice(KIND_WEIGHTS, error);
+		for (int i = 0; i < n; i++)
+			if (options->weight[i] == weight)
+				return error_set(error, STATUS_DOMAIN, "'%s' stands there twice", name);
+		options->weight[n] = weight;
+	}
+	options->n_weights = n;
+	options->fit.criterion.weight = options->weight[0];
+	return STATUS_OK;
+}
+
 static enum status parse_algorithms(const char *text, struct options *options, struct error *error)
 {
 	char name[64];
@@ -480,6 +516,8 @@ enum status option_parse(struct options *options, const struct option_spec *spec
 		return parse_phi(text, value, error);
 	case KIND_NDFS:
 		return parse_ndfs(text, &options->fit, error);
+	case KIND_WEIGHTS:
+		return parse_weights(text, options, error);
 	case KIND_ALGORITHMS:
 		return parse_algorithms(text, options, error);
 	default:
@@ -494,6 +532,13 @@ static void write_ndfs(FILE *file, const struct fit_options *fit)
 {
 	for (int i = 0; i < fit->n_ndf; i++)
 		fprintf(file, "%s%s", i ? "," : "", ndf_name(fit->ndf[i]));
+}
+
+static void write_weights(FILE *file, const struct options *options)
+{
+	fputs(weight_name(options->fit.criterion.weight), file);
+	for (int i = 1; i < options->n_weights; i++)
+		fprintf(file, ",%s", weight_name(options->weight[i]));
 }
 
 static void write_algorithms(FILE *file, const struct options *options)
@@ -550,6 +595,9 @@ void option_write(FILE *file, const struct options *options, const struct option
 		break;
 	case KIND_WEIGHT:
 		fputs(weight_name(*(const enum weight *)value), file);
+		break;
+	case KIND_WEIGHTS:
+		write_weights(file, options);
 		break;
 	case KIND_BINS:
 		fputs(bins_name(*(const enum bins *)value), file);

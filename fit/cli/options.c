@@ -59,13 +59,14 @@ static const struct command_text commands[COMMAND_COUNT] = {
 			  "above the horizon per channel (1/sr), the directional albedo of the data at 0, 30 and 60\n"
 			  "degrees with the share of the hemisphere that is measured, and what looks wrong.\n"},
 	[COMMAND_EXPORT] =
-		{"export", "[FILE]", "a model for another program: BRDF Explorer, Mitsuba 3, pbrt-v4, glTF, ...",
+		{"export", "[FILE]", "a model for another program: BRDF Explorer, Mitsuba 3, pbrt-v4, MaterialX, ...",
 		 "Writes one model: fitted to FILE, from the row of FILE's material in a result table, from\n"
 		 "any row of it (--row), or from given parameters (--kd, --ks, ...). The first lines say\n"
 		 "whether the export is exact or approximate, and why. Where the target has no such model, one\n"
 		 "that it has is fitted in its place, to FILE or the file of the row if that can be read, else\n"
-		 "to the model's own table; the export says what that costs in error. bsdf and bsdf-rgb (spectra,\n"
-		 "rgb) are for the measured materials of pbrt-v4 and Mitsuba 3: any model, as a table.\n"},
+		 "to the model's own table, under --weight, solid-angle by default; the export says what that\n"
+		 "costs in error and how it looks. bsdf and bsdf-rgb (spectra, rgb) are for the measured materials\n"
+		 "of pbrt-v4 and Mitsuba 3: any model, as a table.\n"},
 	[COMMAND_NDF] =
 		{"ndf", "[NAME]", "D, P22, P2, Lambda, G1 and pdf of a distribution as a table",
 		 "Tabulates a normal distribution function: D and pdf of the normal at theta and phi, P22 of its\n"
@@ -79,20 +80,25 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "which each reflects, its density, and its weight: the mean of the weights is the directional\n"
 		 "albedo of the lobe without its Fresnel term.\n"},
 	[COMMAND_CONVERT] =
-		{"convert", "IN OUT", "a measurement as CSV of samples or as a MERL file",
+		{"convert", "IN OUT", "a measurement as CSV of samples, as a MERL or an RGL file",
 		 "Writes a measurement of any format as OUT.csv, samples in linear sRGB or gray with the solid angle\n"
 		 "that each stands for, or as OUT.binary, a MERL file: interpolated, -1 where nothing was measured,\n"
-		 "with the mean of both orders of wi and wo unless --phi 360. One line tells what was lost.\n"},
-	[COMMAND_SYNTH] = {"synth", "OUT.binary", "write a MERL file of a model",
-			   "Writes the table that an ideal measurement of the model would give; -1 below the\n"
-			   "horizon.\n"},
+		 "with the mean of both orders of wi and wo unless --phi 360; or as OUT.bsdf, an RGL file, which "
+		 "pbrt-v4\n"
+		 "and Mitsuba 3 read as measured. One line tells what was lost.\n"},
+	[COMMAND_SYNTH] =
+		{"synth", "OUT", "write a measurement of a model: a MERL file, or a CSV of samples",
+		 "Writes the table that an ideal measurement of the model would give; -1 below the horizon. OUT.csv\n"
+		 "gets samples instead, wi on a grid and wo by half vectors around the mirror direction: anisotropic\n"
+		 "models (--sigma SX,SY) need these.\n"},
 	[COMMAND_RENDER] =
 		{"render", "PATH...", "spheres of measured materials beside those of their models, as PNG",
 		 "Renders a sphere of each measured table and of each model of it in the same light, one row a\n"
 		 "material, with their differences in false colours if there is one material only. The models\n"
 		 "are fitted, taken from a result table (--from, or FILE.csv as the only path: the files it\n"
 		 "names), or given (--kd, --ks, ...). Reports how different model and table look: rmse of linear\n"
-		 "values, delta_e the mean CIEDE2000, ssim the structural similarity.\n"},
+		 "values, delta_e the mean CIEDE2000, ssim the structural similarity; these numbers are all that is\n"
+		 "made without -o. With --transmission it takes no PATH, and shows spheres of rough glass.\n"},
 	[COMMAND_PLOT] =
 		{"plot", "PATH...", "fits, or the course of searches, as plots by gnuplot",
 		 "Takes a result table (FILE.csv), or fits measurements or directories. Writes into the directory\n"
@@ -105,7 +111,7 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "Takes a result table (FILE.csv), or fits measurements or directories. Writes index.html into the\n"
 		 "directory of -o: a summary, a table that can be sorted, and per material its spheres (see\n"
 		 "stdfit render), plots (see stdfit plot), parameters, their certainty, options and versions.\n"
-		 "Of more than 150 materials each has a page of its own, in materials/ beside index.html.\n"},
+		 "Of more than 50 materials each has a page of its own, in materials/ beside index.html.\n"},
 };
 
 const struct command_text *options_command(enum command command)
@@ -136,9 +142,12 @@ struct read_options options_reading(const struct options *options, int threads)
 	return (struct read_options){.threads = threads, .quantity = options->quantity, .gamut = options->gamut};
 }
 
-char *options_text(const struct options *options)
+char *options_text(const struct options *options, enum weight weight)
 {
 	struct text_stream stream;
+	struct options one = *options;
+	one.fit.criterion.weight = weight;
+	one.n_weights = 0;
 	if (!text_stream_open(&stream))
 		return NULL;
 	const char *between = "";
@@ -146,7 +155,7 @@ char *options_text(const struct options *options)
 		if (!is_recorded(options, spec))
 			continue;
 		fprintf(stream.file, "%s%s=", between, spec->name);
-		option_write(stream.file, options, spec);
+		option_write(stream.file, &one, spec);
 		between = " ";
 	}
 	return text_stream_close(&stream);
@@ -261,6 +270,21 @@ int options_usage(enum command command, const char *format, ...)
 	return EXIT_USAGE;
 }
 
+/* Whether what a command makes is to be looked at. Then its own fits have the weight that pictures agree with best. */
+static bool makes_pictures(enum command command)
+{
+	return command == COMMAND_RENDER || command == COMMAND_PLOT || command == COMMAND_REPORT ||
+	       command == COMMAND_EXPORT;
+}
+
+void options_say_weight(const struct options *options)
+{
+	if (makes_pictures(options->command) && !options->quiet && !options_given(options, "weight"))
+		report_error(
+			"fitted under --weight %s, with which pictures agree best; --weight none is the paper's error",
+			weight_name(options->fit.criterion.weight));
+}
+
 struct options options_default(enum command command)
 {
 	struct options options = {
@@ -282,12 +306,12 @@ struct options options_default(enum command command)
 		options.fit.n_ndf = 1;
 		options.fit.ior = 1.5;
 	}
-	if (command == COMMAND_REPORT) { /* small: a page may hold a hundred of these */
-		options.size = 112;
-		options.pixel_samples = 32;
-	}
+	if (command == COMMAND_REPORT) /* a page may hold a hundred of them */
+		options.pixel_samples = 16;
 	if (command == COMMAND_BENCH || command == COMMAND_EXPORT)
 		options.fit.n_ndf = 1;
+	if (makes_pictures(command))
+		options.fit.criterion.weight = WEIGHT_SOLID_ANGLE;
 	return options;
 }
 
@@ -327,6 +351,9 @@ static int spec_of_letter(enum command command, int letter)
 static int take_option(struct options *options, int i, const char *text)
 {
 	struct error error;
+	/* The earlier value would be ignored; a switch says the same again. */
+	if (options->given[i] && option_specs[i].argument)
+		return options_usage(options->command, "--%s stands there twice", option_specs[i].name);
 	options->given[i] = true;
 	if (option_parse(options, &option_specs[i], text, &error) == STATUS_OK)
 		return -1;
@@ -416,14 +443,21 @@ static bool is_input(enum command command, int i, const char *word)
 	return !(command == COMMAND_CONVERT && i > 0) && strcmp(word, "-") != 0;
 }
 
-/* A file that was typed and is not there, before anything is done. -1: all are. */
+/* Whether the file system's answer about an input refuses it before anything is done. Of a file that is there but cannot be
+ * looked at, there are rows that say so; but shares of a list that another host sees as directories would not be the same. */
+static bool is_refused(const struct options *options, int error)
+{
+	return error == ENOENT || error == ENOTDIR || error == ELOOP || options->shard.n > 0;
+}
+
+/* A file that was typed and is not there, or only as a link that leads nowhere. -1: all are. */
 static int check_inputs(const struct options *options)
 {
 	const enum command command = options->command;
 	for (int i = 0; i < options->n_paths; i++) {
 		const char *path = options->path[i];
 		struct stat info;
-		if (!is_input(command, i, path) || lstat(path, &info) == 0 || (errno != ENOENT && errno != ENOTDIR))
+		if (!is_input(command, i, path) || stat(path, &info) == 0 || !is_refused(options, errno))
 			continue;
 		char shown[TEXT_QUOTE_SIZE];
 		const int error = errno;
@@ -493,6 +527,8 @@ int options_check_fit(const struct options *options)
 		return options_usage(options->command, "--starts means nothing with another --algorithm than default");
 	if (options->command != COMMAND_BENCH && options_given(options, "seed") && !fit->starts && !fit->algorithm)
 		return options_usage(options->command, "--seed means nothing without --starts");
+	if (options->trace && options->n_weights > 1)
+		return options_usage(options->command, "--trace takes one --weight");
 	if (options->trace && !isnan(options->within))
 		return options_usage(options->command, "--trace and --within exclude each other");
 	if (options->resume && !options->output)
@@ -551,7 +587,7 @@ int options_parse(struct options *options, enum command command, int argc, char 
 	options->n_paths = argc - optind;
 	options->cancel = cancel;
 	options->fit.cancel = cancel;
-	if (!options->n_paths && commands[command].arguments[0] != '[')
+	if (!options->n_paths && commands[command].arguments[0] != '[' && !options->transmission)
 		return options_usage(command, "expected %s, found nothing", commands[command].arguments);
 	const bool fits = command == COMMAND_FIT || command == COMMAND_COMPARE || command == COMMAND_BENCH;
 	int wrong = find_standard_output(options);

@@ -17,6 +17,9 @@ enum { OPTIONS_MAX = 128 }; /* rows of the option table, at most */
 
 struct options {
 	struct fit_options fit;
+	enum weight
+		weight[WEIGHT_COUNT]; /* of `fit`, which fits under each of them; fit.criterion.weight is the first */
+	int n_weights;                /* 0: fit.criterion.weight is the only one */
 	enum command command;
 	enum quantity quantity; /* of a file that may have another than it says */
 	enum gamut gamut;
@@ -51,6 +54,7 @@ struct options {
 	double exposure;         /* stops */
 	int size, pixel_samples;
 	bool difference;
+	bool transmission, multiple; /* render: a sphere of glass, with all orders of scattering */
 	bool pictures; /* compare: columns of pictures */
 	atomic_bool *cancel;
 	char **path; /* what is no option, in the order given */
@@ -72,9 +76,9 @@ const char *options_given_beside(const struct options *options, const char *cons
 /* options_reading - how the command reads a measurement. */
 struct read_options options_reading(const struct options *options, int threads);
 
-/* options_text - newly allocated: every option that changes a result, in a fixed order, defaults included.
- * NULL when out of memory. */
-char *options_text(const struct options *options);
+/* options_text - newly allocated: every option that changes a result of a fit under this weight, in a fixed order, defaults
+ * included. NULL when out of memory. */
+char *options_text(const struct options *options, enum weight weight);
 
 /* options_model - the model that the options of eval and synth describe, into *model.
  * Returns -1, or EXIT_USAGE when they describe none (reported on standard error). */
@@ -82,6 +86,10 @@ MUST_CHECK int options_model(const struct options *options, struct cook_torrance
 
 /* options_check_fit - whether the options of a fit go together. Returns -1, or EXIT_USAGE with a message on standard error. */
 MUST_CHECK int options_check_fit(const struct options *options);
+
+/* options_say_weight - on standard error, unless --quiet or --weight is given: under which weight a command has fitted whose
+ * output is to be looked at (render, plot, report, export). */
+void options_say_weight(const struct options *options);
 
 /* options_show - what a command prints on standard output: JSON if asked for, readable text if asked for or on a
  * terminal, else CSV. With -o only a terminal or --table gets anything; -o - is CSV unless --table asks for text. */

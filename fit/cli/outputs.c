@@ -4,6 +4,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 bool outputs_standard(const char *name)
@@ -15,6 +16,12 @@ bool outputs_standard(const char *name)
 	const bool standard = output_is_standard(&output);
 	output_close(&output);
 	return standard;
+}
+
+bool outputs_end_with(const char *name, const char *extension)
+{
+	const size_t length = strlen(name), n = strlen(extension);
+	return length > n && !strcasecmp(name + length - n, extension);
 }
 
 /* Commands whose older table becomes FILE~. */

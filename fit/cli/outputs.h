@@ -19,4 +19,7 @@ MUST_CHECK int outputs_check_rows(const struct options *options, const struct cs
 /* outputs_standard - whether an output's name stands for standard output: "-", /dev/stdout and the like. */
 bool outputs_standard(const char *name);
 
+/* outputs_end_with - whether a name has this extension, in any case of letters, and something before it. */
+bool outputs_end_with(const char *name, const char *extension);
+
 #endif

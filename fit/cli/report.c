@@ -121,44 +121,78 @@ static int column_widths(const struct csv_table *table, bool broken, int *width)
 	return sum;
 }
 
-static void print_heading(FILE *file, const struct csv_table *table, bool broken, const int *width)
+/* Columns of a table that stand beside each other: the first, and from `from` to before `to`. */
+struct block {
+	int from, to;
+	bool broken; /* headings are */
+	const int *width;
+};
+
+/* The column behind `c` in a block. */
+static int next_column(const struct block *block, int c)
+{
+	return c == 0 ? block->from : c + 1;
+}
+
+static void print_heading(FILE *file, const struct csv_table *table, const struct block *block)
 {
 	char text[SHOWN_SIZE];
 	bool more = true;
 	for (int line = 0; more; line++) {
 		more = false;
-		for (int c = 0; c < table->n_columns; c++) {
+		for (int c = 0; c < block->to; c = next_column(block, c)) {
 			const struct csv_column *column = &table->column[c];
-			const char *heading =
-				broken ? heading_line(column->name, line, text) : shown_cell(text, column->name, false);
+			const char *heading = block->broken ? heading_line(column->name, line, text)
+							    : shown_cell(text, column->name, false);
 			fputs(c ? "  " : "", file);
-			print_padded(file, heading, width[c], column->number);
+			print_padded(file, heading, block->width[c], column->number);
 			char next[SHOWN_SIZE];
-			more |= broken && line + 1 < HEADING_LINES && *heading_line(column->name, line + 1, next);
+			more |= block->broken && line + 1 < HEADING_LINES &&
+				*heading_line(column->name, line + 1, next);
 		}
 		fputc('\n', file);
 	}
 }
 
-void report_table(FILE *file, const struct csv_table *table)
+static void print_block(FILE *file, const struct csv_table *table, const struct block *block)
 {
-	int *width = calloc((size_t)table->n_columns, sizeof(*width));
 	char text[SHOWN_SIZE];
-	if (!width)
-		return;
-	/* Where a terminal is too narrow for long headings, they are broken. */
-	const bool broken = isatty(fileno(file)) && column_widths(table, false, width) > terminal_width(file);
-	column_widths(table, broken, width);
-	print_heading(file, table, broken, width);
+	print_heading(file, table, block);
 	for (size_t i = 0; i < table->n_rows; i++) {
-		for (int c = 0; c < table->n_columns; c++) {
+		for (int c = 0; c < block->to; c = next_column(block, c)) {
 			const struct csv_column *column = &table->column[c];
+			shown_cell(text, table->row[i][c], column->number);
 			fputs(c ? "  " : "", file);
-			print_padded(file, shown_cell(text, table->row[i][c], column->number), width[c],
-				     column->number);
+			print_padded(file, terminal_cut(text, block->width[c]), block->width[c], column->number);
 		}
 		fputc('\n', file);
 	}
+}
+
+/* Names give way to numbers, down to this. */
+enum { NAME_LEAST = 16 };
+
+void report_table(FILE *file, const struct csv_table *table)
+{
+	int *width = calloc((size_t)table->n_columns, sizeof(*width));
+	if (!width)
+		return;
+	/* Where a terminal is too narrow, long headings are broken, then names in the first column cut, then columns go below. */
+	const int limit = terminal_table_width(file);
+	struct block block = {.from = 1, .width = width};
+	block.broken = column_widths(table, false, width) > limit;
+	const int excess = column_widths(table, block.broken, width) - limit;
+	if (excess > 0 && !table->column[0].number && width[0] > NAME_LEAST)
+		width[0] = width[0] - excess > NAME_LEAST ? width[0] - excess : NAME_LEAST;
+	do {
+		int sum = width[0];
+		for (block.to = block.from; block.to < table->n_columns; sum += GAP + width[block.to++])
+			if (block.to > block.from && sum + GAP + width[block.to] > limit)
+				break;
+		fputs(block.from > 1 ? "\n" : "", file);
+		print_block(file, table, &block);
+		block.from = block.to;
+	} while (block.from < table->n_columns);
 	free(width);
 }
 
@@ -194,26 +228,52 @@ static const char *rgb_text(char text[SHOWN_SIZE], char *const *row, enum result
 	return text;
 }
 
-/* A status that is not the usual one. */
-static void print_remark(FILE *file, const char *status)
+/* A remark behind a row, or below it. */
+static void print_remark(FILE *file, const char *text, bool narrow)
 {
-	char text[SHOWN_SIZE];
-	if (!strcmp(status, "limit")) {
-		fputs("  (stopped by a limit)", file);
-	} else if (strcmp(status, "converged") != 0) {
-		text_quote(status, text, sizeof text);
-		fprintf(file, "  (%s)", text);
+	enum { INDENT = 4 };
+	if (!narrow) {
+		fprintf(file, "  %s", text);
+		return;
 	}
+	fprintf(file, "\n%*s", INDENT, "");
+	terminal_wrap(file, text, INDENT, INDENT, terminal_table_width(file));
 }
+
+/* A status that is not the usual one. */
+static void print_status(FILE *file, const char *status, bool narrow)
+{
+	char text[SHOWN_SIZE], remark[SHOWN_SIZE + 2];
+	if (!strcmp(status, "converged"))
+		return;
+	text_quote(strcmp(status, "limit") ? status : "stopped by a limit", text, sizeof text);
+	snprintf(remark, sizeof remark, "(%s)", text);
+	print_remark(file, remark, narrow);
+}
+
+/* The roughness along both axes, of which the column sigma has the geometric mean. */
+static void print_axes(FILE *file, char *const *row, bool narrow)
+{
+	const double x = result_number(row, RESULT_SIGMA_X), y = result_number(row, RESULT_SIGMA_Y);
+	char text[SHOWN_SIZE];
+	if (isnan(x) || isnan(y))
+		return;
+	snprintf(text, sizeof text, "(sigma_x %.5g, sigma_y %.5g, angle %.4g)", x, y, result_number(row, RESULT_ANGLE));
+	print_remark(file, text, narrow);
+}
+
+/* The columns of a table of fits; of its names, at least: a wider terminal shares the rest between them and remarks. */
+enum { FITS_WIDTH = 126, FITS_NAME = 22 };
 
 /* A terminal too narrow for all columns gets the factors on a line of their own. */
 static bool is_narrow(FILE *file)
 {
-	enum { WHOLE = 126 };
-	return isatty(fileno(file)) && terminal_width(file) < WHOLE;
+	return terminal_table_width(file) < FITS_WIDTH;
 }
 
-static void print_fit(FILE *file, char *const *row, bool narrow)
+enum { WEIGHT_WIDTH = 11 };
+
+static void print_fit(FILE *file, char *const *row, bool narrow, bool weights)
 {
 	static const struct {
 		enum result_column column;
@@ -227,13 +287,20 @@ static void print_fit(FILE *file, char *const *row, bool narrow)
 	};
 	char text[SHOWN_SIZE];
 	text_quote(row[RESULT_MATERIAL], text, sizeof text);
-	print_padded(file, text, 22, false);
+	terminal_cut(text, FITS_NAME + (narrow ? 0 : (terminal_table_width(file) - FITS_WIDTH) / 2));
+	print_padded(file, text, FITS_NAME, false);
 	fputs("  ", file);
 	text_quote(row[RESULT_NDF], text, sizeof text);
 	print_padded(file, text, 8, false);
+	if (weights) {
+		fputs("  ", file);
+		text_quote(row[RESULT_WEIGHT], text, sizeof text);
+		print_padded(file, text, WEIGHT_WIDTH, false);
+	}
 	if (result_failed(row)) {
 		text_quote(row[RESULT_STATUS], text, sizeof text);
-		fprintf(file, "  %s\n", text);
+		print_remark(file, text, narrow);
+		fputc('\n', file);
 		return;
 	}
 	for (size_t i = 0; i < sizeof number / sizeof *number; i++) {
@@ -244,21 +311,29 @@ static void print_fit(FILE *file, char *const *row, bool narrow)
 	fprintf(file, narrow ? "\n    kd %-20s" : "  %-20s", rgb_text(text, row, RESULT_KD_R));
 	fprintf(file, narrow ? "  ks %-20s" : "  %-20s", rgb_text(text, row, RESULT_KS_R));
 	text_quote(row[RESULT_AT_BOUND], text, sizeof text);
-	fprintf(file, "%s%s", !*text ? "" : narrow ? "\n    at bound: " : "  ", text);
-	print_remark(file, row[RESULT_STATUS]);
+	char bound[SHOWN_SIZE + 16];
+	snprintf(bound, sizeof bound, "%s%s", narrow ? "at bound: " : "", text);
+	if (*text)
+		print_remark(file, bound, narrow);
+	print_axes(file, row, narrow);
+	print_status(file, row[RESULT_STATUS], narrow);
 	if (!strcmp(row[RESULT_ENERGY], "gain"))
-		fputs("  (sends back more light than it gets)", file);
+		print_remark(file, "(sends back more light than it gets)", narrow);
 	fputc('\n', file);
 }
 
-void report_fits(FILE *file, const struct csv_table *results, bool heading)
+void report_fits(FILE *file, const struct csv_table *results, bool heading, bool weights)
 {
 	const bool narrow = is_narrow(file);
-	if (heading && narrow)
-		fprintf(file, "%-22s  %-8s %9s %9s %8s %8s\n", "material", "ndf", "error", "sigma", "gamma", "n");
-	else if (heading)
-		fprintf(file, "%-22s  %-8s %9s %9s %8s %8s  %-20s  %-20s  %s\n", "material", "ndf", "error", "sigma",
-			"gamma", "n", "kd", "ks", "at bound");
+	if (heading) {
+		fprintf(file, "%-*s  %-8s", FITS_NAME, "material", "ndf");
+		if (weights)
+			fprintf(file, "  %-*s", WEIGHT_WIDTH, "weight");
+		fprintf(file, " %9s %9s %8s %8s", "error", "sigma", "gamma", "n");
+		if (!narrow)
+			fprintf(file, "  %-20s  %-20s  %s", "kd", "ks", "at bound");
+		fputc('\n', file);
+	}
 	for (size_t i = 0; i < results->n_rows; i++)
-		print_fit(file, results->row[i], narrow);
+		print_fit(file, results->row[i], narrow, weights);
 }

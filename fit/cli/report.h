@@ -17,7 +17,8 @@ typedef void report_readable(FILE *file, const struct csv_table *table);
 enum show { SHOW_NOTHING, SHOW_CSV, SHOW_JSON, SHOW_READABLE };
 void report_output(const struct csv_table *table, enum show show, report_readable *readable);
 
-/* report_fits - the fitted rows (of result.h) of one file; a heading too if asked for. */
-void report_fits(FILE *file, const struct csv_table *results, bool heading);
+/* report_fits - the fitted rows (of result.h) of one file; a heading too if asked for. weights: with a column of the weight,
+ * for fits under several. */
+void report_fits(FILE *file, const struct csv_table *results, bool heading, bool weights);
 
 #endif

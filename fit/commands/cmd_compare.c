@@ -92,7 +92,7 @@ static int compare(const struct options *options, struct csv_table *rows)
 	return status != STATUS_OK || light.n_failed ? EXIT_FAILED : EXIT_DONE;
 }
 
-/* Rows that can be compared were made with the same options, and one fit has one result. */
+/* Rows that can be compared were made with the same options, but for the weight, and one fit has one result. */
 static enum status check_rows(const struct csv_table *rows, const char *path, struct error *error)
 {
 	char name[TEXT_QUOTE_SIZE];
@@ -100,7 +100,7 @@ static enum status check_rows(const struct csv_table *rows, const char *path, st
 	if (!rows->n_rows)
 		return error_set(error, STATUS_NO_DATA, "'%s' has no rows to compare", name);
 	for (size_t i = 1; i < rows->n_rows; i++)
-		if (!result_same_options(rows->row[0][RESULT_OPTIONS], rows->row[i][RESULT_OPTIONS]))
+		if (!result_same_but_weight(rows->row[0], rows->row[i]))
 			return error_set(error, STATUS_FORMAT, "'%s' row %zu: made with other options than row 1", name,
 					 i + 1);
 	return contradiction_check(rows, path, error);

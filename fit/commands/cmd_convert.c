@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* stdfit convert - a measurement as a CSV of samples or as a MERL file. */
+/* stdfit convert - a measurement as a CSV of samples, as a MERL file or as an RGL file. */
 #include "data_readers/measurement_read.h"
 #include "data_readers/merl.h"
 #include "data_readers/resample.h"
@@ -7,17 +7,11 @@
 #include "fit/cli/messages.h"
 #include "fit/cli/outputs.h"
 #include "fit/commands/commands.h"
+#include "fit/render/measured_bsdf.h"
 
 #include <string.h>
-#include <strings.h>
 
 enum { LOST_SIZE = 512 };
-
-static bool ends_with(const char *path, const char *ending)
-{
-	const size_t length = strlen(path), n = strlen(ending);
-	return length > n && !strcasecmp(path + length - n, ending);
-}
 
 /* Adds "; what" to the text. */
 static void add(char text[LOST_SIZE], const char *what)
@@ -38,15 +32,16 @@ static void add_count(char text[LOST_SIZE], size_t n, const char *what)
 static void add_left_out(char text[LOST_SIZE], const struct measurement *measurement, enum gamut gamut)
 {
 	const struct scattered *s = measurement->scattered;
-	add_count(text, s ? measurement->n_negative : 0, "negative left out");
-	add_count(text, s ? measurement->n_nonfinite : 0, "non-finite left out");
-	add_count(text, measurement->n_missing, "not measured");
-	add_count(text, measurement->n_below_horizon, "at or below the horizon left out");
-	add_count(text, measurement->n_out_of_gamut,
-		  gamut == GAMUT_MASK ? "out of gamut left out" : "out of gamut, their negative part set to 0");
+	char left_out[MEASUREMENT_LEFT_OUT], words[LOST_SIZE / 2];
+	if (gamut == GAMUT_CLIP)
+		add_count(text, measurement->n_out_of_gamut, "out of gamut, their negative part set to 0");
 	if (s && measurement->n_channels > MERL_CHANNELS)
 		add_count(text, (size_t)measurement->n_channels,
 			  s->gray ? "wavelengths became their mean" : "wavelengths became linear sRGB");
+	if (!*measurement_left_out(measurement, LEFT_OUT_ALL, gamut == GAMUT_MASK, left_out))
+		return;
+	snprintf(words, sizeof words, "left out: %s", left_out);
+	add(text, words);
 }
 
 static enum status write_samples(const struct options *options, const struct measurement *measurement,
@@ -85,20 +80,54 @@ static enum status write_table(const struct options *options, const struct measu
 	return status;
 }
 
+/* Whatever is no table already, nor turns, is made one. */
+static enum status write_bsdf(const struct options *options, const struct measurement *measurement,
+			      char lost[LOST_SIZE], size_t *n, struct error *error)
+{
+	const bool table = !measurement->scattered || measurement_turns(measurement);
+	const enum bins bins = options->fit.criterion.bins;
+	const int threads = options->fit.threads;
+	struct measurement filled = {0};
+	double distance = 0;
+	char words[LOST_SIZE / 4];
+	enum status status =
+		table ? STATUS_OK : measurement_resample(measurement, bins, 180, GAPS_FILLED, threads, &filled, NULL);
+	if (status != STATUS_OK)
+		return error_set(error, status, "%s", status_str(status));
+	status = *options->cancel
+			 ? STATUS_INTERRUPTED
+			 : measured_bsdf_write(options->path[1], table ? measurement : &filled, bins,
+					       "a measurement, interpolated; written by stdfit " STDFIT_VERSION,
+					       threads, &distance, error);
+	measurement_free(&filled);
+	*n = 0;
+	for (size_t e = 0; e < measurement_count(measurement); e++)
+		*n += measurement->scattered || !isnan(measurement->value[0][e]);
+	snprintf(words, sizeof words, "interpolated, with an error of %.2g %% (L1, weight solid-angle)",
+		 100 * distance);
+	add(lost, words);
+	add_left_out(lost, measurement, options->gamut);
+	return status;
+}
+
 static enum status convert(const struct options *options, struct error *error)
 {
 	const struct read_options reading = options_reading(options, options->fit.threads);
-	const bool as_table = ends_with(options->path[1], ".binary");
+	const bool as_table = outputs_end_with(options->path[1], ".binary");
+	const char *const one = as_table ? "entry" : "sample", *const many = as_table ? "entries" : "samples";
 	struct measurement measurement;
 	char lost[LOST_SIZE] = "";
 	size_t n = 0;
 	enum status status = measurement_read(options->path[0], &reading, &measurement, error);
 	if (status != STATUS_OK)
 		return status;
-	status = (as_table ? write_table : write_samples)(options, &measurement, lost, &n, error);
+	const bool as_bsdf = outputs_end_with(options->path[1], ".bsdf");
+	status = (as_table  ? write_table
+		  : as_bsdf ? write_bsdf
+			    : write_samples)(options, &measurement, lost, &n, error);
 	measurement_free(&measurement);
 	if (status == STATUS_OK && !options->quiet)
-		fprintf(stderr, "%zu %s; lost: %s\n", n, as_table ? "entries of the table" : "samples",
+		fprintf(stderr, "%zu %s%s; lost: %s\n", n, n == 1 ? one : many, as_table ? " of the table" : "",
 			lost[0] ? lost : "nothing");
 	return status;
 }
@@ -110,11 +139,11 @@ int cmd_convert(int argc, char **argv, atomic_bool *cancel)
 	int code = options_parse(&options, COMMAND_CONVERT, argc, argv, cancel);
 	if (code < 0 && options.n_paths != 2)
 		code = options_usage(COMMAND_CONVERT, "expected IN and OUT, found %d names", options.n_paths);
-	if (code < 0 && !ends_with(options.path[1], ".csv") && !ends_with(options.path[1], ".binary") &&
-	    !outputs_standard(options.path[1]))
-		code = options_usage(COMMAND_CONVERT, "expected OUT.csv or OUT.binary, or - for a CSV");
-	if (code < 0 && !ends_with(options.path[1], ".binary") && options_given(&options, "phi"))
-		code = options_usage(COMMAND_CONVERT, "--phi means nothing for a CSV");
+	if (code < 0 && !outputs_end_with(options.path[1], ".csv") && !outputs_end_with(options.path[1], ".binary") &&
+	    !outputs_end_with(options.path[1], ".bsdf") && !outputs_standard(options.path[1]))
+		code = options_usage(COMMAND_CONVERT, "expected OUT.csv, OUT.binary or OUT.bsdf, or - for a CSV");
+	if (code < 0 && !outputs_end_with(options.path[1], ".binary") && options_given(&options, "phi"))
+		code = options_usage(COMMAND_CONVERT, "--phi means nothing but for a MERL file");
 	if (code >= 0)
 		return code;
 	const enum status status = convert(&options, &error);

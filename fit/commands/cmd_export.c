@@ -6,6 +6,7 @@
 #include "fit/cli/messages.h"
 #include "fit/cli/outputs.h"
 #include "fit/commands/commands.h"
+#include "fit/sources/export_pictures.h"
 #include "fit/sources/model_source.h"
 
 #include <errno.h>
@@ -29,6 +30,11 @@ static int check(const struct options *options)
 	if (!bsdf && (options_given(options, "accuracy") || options_given(options, "size")))
 		return options_usage(COMMAND_EXPORT, "--%s means nothing without --format bsdf or bsdf-rgb",
 				     options_given(options, "accuracy") ? "accuracy" : "size");
+	if (options_given(options, "weight") && model_source_kind(options) != SOURCE_FIT &&
+	    !export_has_substitutes(options->format))
+		return options_usage(COMMAND_EXPORT,
+				     "--weight means nothing without a fit: --format %s has every model",
+				     export_format_name(options->format));
 	if (export_is_binary(options->format) && !options->output)
 		return options_usage(COMMAND_EXPORT, "--format %s is binary and needs -o FILE",
 				     export_format_name(options->format));
@@ -115,6 +121,8 @@ static enum status write_model(const struct options *options, const struct sourc
 	const struct export_source source = {.model = &model->model,
 					     .fit = &model->fit,
 					     .error = model->error,
+					     .weight = options_given(options, "weight") ? options->fit.criterion.weight
+											: WEIGHT_SOLID_ANGLE,
 					     .material = model->material,
 					     .path = measured ? measured : model->path,
 					     .measurement = measured ? measurement : NULL,
@@ -128,6 +136,9 @@ static enum status write_model(const struct options *options, const struct sourc
 				 why.text);
 	if (*options->cancel)
 		return STATUS_INTERRUPTED;
+	status = export_pictures(&export, measured ? measurement : NULL);
+	if (status != STATUS_OK)
+		return error_set(error, status, "%s", status_str(status));
 	status = options->format == EXPORT_MERL ? write_merl(&export, options->output, error)
 						: write_text(&export, options->output, error);
 	if (status == STATUS_OK && !options->quiet && export_is_binary(options->format))
@@ -142,6 +153,8 @@ static enum status run(const struct options *options, int *wrong, struct error *
 	enum status status = model_source_read(options, options->n_paths ? options->path[0] : NULL, &source, error);
 	if (status != STATUS_OK)
 		return status;
+	if (model_source_kind(options) == SOURCE_FIT)
+		options_say_weight(options);
 	if (source.n > 1)
 		status =
 			error_set(error, STATUS_FORMAT, "%zu rows are meant: choose one with --ndf or --row", source.n);

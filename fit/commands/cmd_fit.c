@@ -30,7 +30,7 @@ struct sink {
 static void show_rows(struct sink *sink, const struct csv_table *rows)
 {
 	if (sink->show == SHOW_READABLE) {
-		report_fits(stdout, rows, !sink->headed && rows->n_rows);
+		report_fits(stdout, rows, !sink->headed && rows->n_rows, sink->batch->n_weights > 1);
 		sink->headed |= rows->n_rows > 0;
 	} else if (sink->show == SHOW_CSV) {
 		for (size_t i = 0; i < rows->n_rows; i++)
@@ -66,13 +66,54 @@ static bool file_done(void *user, struct batch_file *file)
 {
 	struct sink *sink = user;
 	if (sink->stored) {
-		const struct result_source source = batch_source(sink->batch, file);
-		store_drop_stale(&sink->store, &source);
+		struct result_source source[WEIGHT_COUNT];
+		batch_sources(sink->batch, file, source);
+		store_drop_stale(&sink->store, source, sink->batch->n_weights);
 		sink->broken = store_append(&sink->store, &file->rows, &sink->error) != STATUS_OK;
 	}
 	if (!sink->broken)
 		sink->broken = !advance(sink, false);
 	return !sink->broken;
+}
+
+/* The best of the rows of one file and weight, which begin at `start`; *end: the row behind them. */
+static char *const *best_row(const struct csv_table *rows, size_t start, size_t *end)
+{
+	size_t best = start, i = start + 1;
+	for (; i < rows->n_rows && !strcmp(rows->row[i][RESULT_PATH], rows->row[start][RESULT_PATH]) &&
+	       !strcmp(rows->row[i][RESULT_WEIGHT], rows->row[start][RESULT_WEIGHT]);
+	     i++)
+		if (result_number(rows->row[i], RESULT_ERROR) < result_number(rows->row[best], RESULT_ERROR))
+			best = i;
+	*end = i;
+	return rows->row[best];
+}
+
+/* Tells whoever sits before a terminal that the fits are likely to look wrong. */
+static void hint_at_weight(const struct sink *sink)
+{
+	const struct csv_table *rows = &sink->rows;
+	size_t n = 0, n_materials = 0;
+	const char *first = NULL;
+	for (int w = 0; w < sink->batch->n_weights; w++)
+		if (sink->batch->weight[w] == WEIGHT_SOLID_ANGLE)
+			return;
+	for (size_t i = 0; i < rows->n_rows; n_materials++) {
+		char *const *best = best_row(rows, i, &i);
+		if (!result_looks_wrong(best))
+			continue;
+		first = first ? first : best[RESULT_MATERIAL];
+		n++;
+	}
+	char name[TEXT_QUOTE_SIZE], others[64] = "";
+	text_quote(first ? first : "", name, sizeof name);
+	if (n > 1)
+		snprintf(others, sizeof others, " and %zu more of %zu", n - 1, n_materials);
+	if (n)
+		report_error(
+			"hint: with --weight solid-angle the pictures of '%s'%s would most likely look much more like "
+			"the measured ones",
+			name, others);
 }
 
 /* What is written when all files are done, or what could be done of them. */
@@ -121,6 +162,8 @@ static int run(struct sink *sink, struct batch *batch)
 	}
 	if (sink->broken && sink->error.text[0])
 		report_error("%s", sink->error.text);
+	if (code != EXIT_INTERRUPTED && !sink->broken && !sink->options->quiet && isatty(STDERR_FILENO))
+		hint_at_weight(sink);
 	return code;
 }
 
@@ -159,24 +202,12 @@ static int run_traced(struct sink *sink, struct batch *batch)
 	return code == EXIT_DONE ? EXIT_FAILED : code;
 }
 
-/* As files_collect(). Where something is not there (a disk that is not mounted), the list and so the shares would not be
- * those that the others fit: then there are none. */
+/* As files_collect(). Where a directory cannot be read, the list and so the shares would not be those that the others fit:
+ * then there are none. */
 static int collect(const struct options *options, struct files *files)
 {
-	const bool sharing = options->shard.n > 0;
-	int missing = 0;
-	*files = (struct files){0};
-	for (int i = 0; i < options->n_paths && sharing; i++)
-		if (access(options->path[i], F_OK)) {
-			char name[TEXT_QUOTE_SIZE];
-			text_quote(options->path[i], name, sizeof name);
-			report_error("cannot read '%s': %s", name, strerror(errno));
-			missing++;
-		}
-	if (missing)
-		return missing;
 	const int bad = files_collect(files, options->path, options->n_paths, options->recursive, options->cancel);
-	if (sharing && bad > 0)
+	if (options->shard.n > 0 && bad > 0)
 		files_free(files);
 	return bad;
 }

@@ -106,18 +106,6 @@ static void write_suspects(char text[SUSPECTS_SIZE], const struct measurement *m
 	}
 }
 
-/* Which entries of the file are not among those that count, and why. */
-static void write_left_out(char text[SUSPECTS_SIZE], const struct measurement *measurement, enum gamut gamut)
-{
-	text[0] = '\0';
-	add_count(text, "negative", measurement->n_negative);
-	add_count(text, "non-finite", measurement->n_nonfinite);
-	add_count(text, "not measured", measurement->n_missing);
-	add_count(text, "at or below the horizon", measurement->n_below_horizon);
-	if (gamut == GAMUT_MASK)
-		add_count(text, "out of gamut", measurement->n_out_of_gamut);
-}
-
 static enum status add_file(struct csv_table *table, const char *path, const struct measurement *measurement,
 			    const struct census *census, enum gamut gamut, const struct suspects *found)
 {
@@ -145,8 +133,8 @@ static enum status add_file(struct csv_table *table, const char *path, const str
 		number[INFO_ALBEDO + 4 * a + 3] = found->measured[a];
 	}
 	number[INFO_ENDS_AT] = found->ends_at;
-	char text[INFO_COLUMNS][CSV_NUMBER_SIZE], hash[CSV_NUMBER_SIZE], suspects[SUSPECTS_SIZE],
-		left_out[SUSPECTS_SIZE];
+	char text[INFO_COLUMNS][CSV_NUMBER_SIZE], hash[CSV_NUMBER_SIZE], suspects[SUSPECTS_SIZE];
+	char left_out[MEASUREMENT_LEFT_OUT];
 	const char *cell[INFO_COLUMNS];
 	for (int c = 0; c < INFO_COLUMNS; c++)
 		cell[c] = csv_number(text[c], number[c]);
@@ -155,10 +143,9 @@ static enum status add_file(struct csv_table *table, const char *path, const str
 	cell[INFO_PATH] = path;
 	cell[INFO_HASH] = hash;
 	cell[INFO_SUSPECTS] = suspects;
-	write_left_out(left_out, measurement, gamut);
 	cell[INFO_FORMAT] = measurement->format;
 	cell[INFO_SYMMETRY] = symmetry_name(scattered ? scattered->symmetry : SYMMETRY_ISOTROPIC);
-	cell[INFO_LEFT_OUT] = left_out;
+	cell[INFO_LEFT_OUT] = measurement_left_out(measurement, LEFT_OUT_OF_TABLE, gamut == GAMUT_MASK, left_out);
 	return csv_table_add(table, cell);
 }
 
@@ -172,8 +159,9 @@ static enum status inspect(struct csv_table *table, const struct options *option
 	enum status status = measurement_read(path, &reading, &measurement, error);
 	if (status != STATUS_OK)
 		return status;
-	suspects_find(&measurement, &options->fit.criterion, &suspects);
-	status = census_take(&measurement, options->fit.criterion.bins, &census);
+	status = suspects_find(&measurement, &options->fit.criterion, &suspects);
+	if (status == STATUS_OK)
+		status = census_take(&measurement, options->fit.criterion.bins, &census);
 	if (status == STATUS_OK)
 		status = add_file(table, path, &measurement, &census, options->gamut, &suspects);
 	if (status != STATUS_OK)

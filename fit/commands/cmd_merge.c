@@ -13,7 +13,10 @@
 
 static void show_fits(FILE *file, const struct csv_table *table)
 {
-	report_fits(file, table, true);
+	bool weights = false;
+	for (size_t i = 1; i < table->n_rows; i++)
+		weights |= strcmp(table->row[0][RESULT_WEIGHT], table->row[i][RESULT_WEIGHT]) != 0;
+	report_fits(file, table, true, weights);
 }
 
 static enum status write_merged(const struct options *options, const struct merge *m, struct error *error)

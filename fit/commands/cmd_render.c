@@ -9,6 +9,7 @@
 #include "fit/cli/outputs.h"
 #include "fit/cli/progress.h"
 #include "fit/commands/commands.h"
+#include "fit/render/glass.h"
 #include "fit/render/pictures.h"
 #include "fit/render/sheet.h"
 #include "fit/results/store.h"
@@ -16,12 +17,12 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 enum render_column {
 	RENDER_MATERIAL,
 	RENDER_NDF,
+	RENDER_WEIGHT,
 	RENDER_ERROR,
 	RENDER_RMSE,
 	RENDER_DELTA_E,
@@ -30,8 +31,9 @@ enum render_column {
 };
 
 static const struct csv_column columns[RENDER_COLUMNS] = {
-	[RENDER_MATERIAL] = {"material", false}, [RENDER_NDF] = {"ndf", false},        [RENDER_ERROR] = {"error", true},
-	[RENDER_RMSE] = {"rmse", true},          [RENDER_DELTA_E] = {"delta_e", true}, [RENDER_SSIM] = {"ssim", true},
+	[RENDER_MATERIAL] = {"material", false}, [RENDER_NDF] = {"ndf", false},  [RENDER_WEIGHT] = {"weight", false},
+	[RENDER_ERROR] = {"error", true},        [RENDER_RMSE] = {"rmse", true}, [RENDER_DELTA_E] = {"delta_e", true},
+	[RENDER_SSIM] = {"ssim", true},
 };
 
 struct render {
@@ -66,7 +68,9 @@ static enum status add_row(struct render *render, const char *material, const st
 		[RENDER_SSIM] = picture->ssim,
 	};
 	char text[RENDER_COLUMNS][CSV_NUMBER_SIZE];
-	const char *cell[RENDER_COLUMNS] = {material, ndf_name(model->model.ndf.class)};
+	/* The error of given parameters is not known, and under no weight. */
+	const char *weight = isnan(model->error) ? "" : weight_name(model->fit.criterion.weight);
+	const char *cell[RENDER_COLUMNS] = {material, ndf_name(model->model.ndf.class), weight};
 	for (int c = RENDER_ERROR; c < RENDER_COLUMNS; c++)
 		cell[c] = csv_number(text[c], number[c]);
 	return csv_table_add(&render->output, cell);
@@ -127,8 +131,8 @@ static enum status show_source(struct render *render, const char *path, struct m
 		status = result_check_input(shown.model[i]->input, &source->measurement, path, error);
 	if (status != STATUS_OK)
 		return status;
-	status = measurement_fill(&source->measurement, shown.model[0]->fit.criterion.bins,
-				  render->options->fit.threads);
+	status = measurement_fill_isotropic(&source->measurement, shown.model[0]->fit.criterion.bins,
+					    render->options->fit.threads);
 	if (status == STATUS_OK)
 		status = show_models(render, path, &source->measurement, &shown);
 	if (status == STATUS_OK)
@@ -172,20 +176,20 @@ static enum status prepare_sheet(struct render *render, size_t n, struct error *
 				? "the picture would be too large: expected fewer materials or a smaller --size"
 				: status_str(status));
 	sheet_title(&render->sheet, 0, "measured");
-	for (int c = 0; c < render->columns.n; c++)
-		sheet_title(&render->sheet, 1 + c, render->columns.ndf[c]);
+	for (int c = 0; c < render->columns.n; c++) {
+		const struct shown_columns *shown = &render->columns;
+		char title[64];
+		snprintf(title, sizeof title, "%s%s%s", shown->ndf[c], shown->weights ? " " : "",
+			 shown->weights ? weight_name(shown->weight[c]) : "");
+		sheet_title(&render->sheet, 1 + c, title);
+	}
 	return STATUS_OK;
-}
-
-static bool ends_with(const char *path, const char *ending)
-{
-	const size_t length = strlen(path), n = strlen(ending);
-	return length > n && !strcasecmp(path + length - n, ending);
 }
 
 static enum status write_picture(const struct render *render, struct error *error)
 {
-	const bool png = ends_with(render->picture, ".png") || (render->options->to_standard_output && image_has_png());
+	const bool png =
+		outputs_end_with(render->picture, ".png") || (render->options->to_standard_output && image_has_png());
 	return png ? image_write_png(render->picture, &render->sheet.image, error)
 		   : image_write_pfm(render->picture, &render->sheet.image, error);
 }
@@ -208,6 +212,8 @@ static int show_files(struct render *render, const struct files *files)
 	for (size_t i = 0; i < files->n && !*options->cancel; i++)
 		failed += show_file(render, files->path[i]) != STATUS_OK;
 	progress_erase(&render->progress);
+	if (model_source_kind(options) == SOURCE_FIT && failed < files->n && !*options->cancel)
+		options_say_weight(options);
 	report_output(&render->output, options->to_standard_output ? SHOW_NOTHING : options_show(options),
 		      report_table);
 	if (*options->cancel)
@@ -244,7 +250,108 @@ static int collect_and_show(struct render *render)
 	return code == EXIT_DONE && bad ? EXIT_FAILED : code;
 }
 
+/* Glass */
+
+static enum status glass_of(const struct options *options, const struct ndf_class *class, struct glass *glass,
+			    struct error *error)
+{
+	const struct fit_options *fit = &options->fit;
+	struct ndf ndf;
+	enum status status = ndf_init(&ndf, class, fit->sigma, fit->sigma, isnan(fit->gamma) ? 2 : fit->gamma);
+	if (status != STATUS_OK)
+		return error_set(error, status, "--ndf %s does not allow these parameters", ndf_name(class));
+	status = glass_init(glass, &ndf, fit->criterion.gaf, isnan(fit->ior) ? 1.5 : fit->ior, options->multiple,
+			    options->sampling);
+	if (status != STATUS_OK)
+		error_set(error, status, "there is no glass of --ndf %s with these options", ndf_name(class));
+	return status;
+}
+
+static enum status draw_glass(struct render *render, struct error *error)
+{
+	const struct options *options = render->options;
+	enum status status = sheet_init(&render->sheet, options->size, options->fit.n_ndf, 1, false);
+	if (status != STATUS_OK)
+		return error_set(error, status, "the picture would be too large: expected a smaller --size");
+	for (int i = 0; i < options->fit.n_ndf && status == STATUS_OK; i++) {
+		struct glass glass;
+		struct sphere sphere;
+		status = glass_of(options, options->fit.ndf[i], &glass, error);
+		if (status != STATUS_OK)
+			return status;
+		status = sphere_render_glass(&glass, &render->environment, &render->sphere, &sphere);
+		if (status != STATUS_OK)
+			return error_set(error, status, "%s", status_str(status));
+		sheet_title(&render->sheet, i, ndf_name(options->fit.ndf[i]));
+		sheet_sphere(&render->sheet, i, 0, &sphere, options->multiple ? "multiple" : "single");
+		sphere_free(&sphere);
+	}
+	return status;
+}
+
+static int show_glass(struct render *render)
+{
+	const struct options *options = render->options;
+	struct error error;
+	enum status status = lighting_make(options, &render->environment, &error);
+	if (status == STATUS_DOMAIN)
+		return options_usage(COMMAND_RENDER, "%s", error.text);
+	if (status == STATUS_OK)
+		status = store_probe(render->picture, &error);
+	render->progress = progress_start((size_t)options->fit.n_ndf * (size_t)options->size, "rows", options->quiet);
+	if (status == STATUS_OK)
+		status = draw_glass(render, &error);
+	progress_erase(&render->progress);
+	if (status == STATUS_OK)
+		status = write_picture(render, &error);
+	if (*options->cancel)
+		return EXIT_INTERRUPTED;
+	if (status != STATUS_OK)
+		report_error("%s", error.text);
+	return status == STATUS_OK ? EXIT_DONE : EXIT_FAILED;
+}
+
 /* Options */
+
+static int check_glass_shape(const struct options *options)
+{
+	const struct fit_options *fit = &options->fit;
+	bool shaped = false;
+	for (int i = 0; i < fit->n_ndf; i++)
+		shaped |= ndf_has_gamma(fit->ndf[i]);
+	if (!options_given(options, "sigma") || !isnan(fit->sigma_y))
+		return options_usage(COMMAND_RENDER, "--transmission needs --sigma with one number");
+	if (shaped != options_given(options, "gamma"))
+		return options_usage(COMMAND_RENDER, shaped ? "--ndf %s needs --gamma" : "--ndf %s has no --gamma",
+				     ndf_name(fit->ndf[0]));
+	return -1;
+}
+
+static int check_glass(const struct options *options)
+{
+	static const char *const useful[] = {"transmission", "multiple", "ndf",         "sigma",   "gamma",    "ior",
+					     "gaf",          "output",   "environment", "light",   "exposure", "size",
+					     "samples",      "sampling", "seed",        "threads", "quiet",    NULL};
+	const char *ignored = options_given_beside(options, useful);
+	if (options->multiple && !options->transmission)
+		return options_usage(COMMAND_RENDER, "--multiple means nothing without --transmission");
+	if (!options->transmission)
+		return -1;
+	if (options->n_paths)
+		return options_usage(COMMAND_RENDER, "--transmission shows no files, found %d", options->n_paths);
+	if (options->multiple && options_given(options, "gaf"))
+		ignored = "gaf";
+	if (options->multiple && options_given(options, "sampling"))
+		ignored = "sampling";
+	if (ignored)
+		return options_usage(COMMAND_RENDER, "--%s means nothing with --%s", ignored,
+				     options->multiple ? "multiple" : "transmission");
+	if (!options->picture)
+		return options_usage(COMMAND_RENDER, "--transmission needs -o");
+	if (options->fit.criterion.gaf == GAF_V_GROOVE)
+		return options_usage(COMMAND_RENDER, "--gaf v-groove is of reflection alone");
+	return check_glass_shape(options);
+}
 
 static int check_paths(struct render *render)
 {
@@ -267,6 +374,8 @@ static int check_paths(struct render *render)
 static int check_picture(struct render *render, char **renamed)
 {
 	render->picture = render->options->picture;
+	if (!render->picture && render->options->difference)
+		return options_usage(COMMAND_RENDER, "--difference needs -o FILE, the picture to show it in");
 	if (!render->picture)
 		return -1;
 	if (outputs_standard(render->picture)) {
@@ -275,9 +384,9 @@ static int check_picture(struct render *render, char **renamed)
 		render->options->to_standard_output = true;
 		return -1;
 	}
-	if (ends_with(render->picture, ".pfm"))
+	if (outputs_end_with(render->picture, ".pfm"))
 		return -1;
-	if (!ends_with(render->picture, ".png"))
+	if (!outputs_end_with(render->picture, ".png"))
 		return options_usage(COMMAND_RENDER, "expected -o FILE.png, -o FILE.pfm or -o -");
 	if (image_has_png())
 		return -1;
@@ -298,10 +407,13 @@ int cmd_render(int argc, char **argv, atomic_bool *cancel)
 	if (code >= 0)
 		return code;
 	struct render render = {.options = &options, .output = csv_table_make(columns, RENDER_COLUMNS)};
-	code = check_paths(&render);
-	if (code < 0 && model_source_kind(&options) == SOURCE_GIVEN && !options_given(&options, "ndf"))
-		options.fit.n_ndf = 1;
+	code = check_glass(&options);
 	if (code < 0)
+		code = check_paths(&render);
+	if (code < 0 && (options.transmission || model_source_kind(&options) == SOURCE_GIVEN) &&
+	    !options_given(&options, "ndf"))
+		options.fit.n_ndf = 1;
+	if (code < 0 && !options.transmission)
 		code = model_source_check(&options, true);
 	if (code < 0)
 		code = check_picture(&render, &renamed);
@@ -313,7 +425,7 @@ int cmd_render(int argc, char **argv, atomic_bool *cancel)
 							.cancel = cancel,
 							.row_done = row_done,
 							.user = &render};
-		code = collect_and_show(&render);
+		code = options.transmission ? show_glass(&render) : collect_and_show(&render);
 	}
 	environment_free(&render.environment);
 	sheet_free(&render.sheet);

@@ -92,7 +92,7 @@ static bool draw_spheres(struct report *r, const struct material_data *data, str
 			 char **caption, struct error *why)
 {
 	struct picture_error difference[FIT_NDFS_MAX] = {{.rmse = 0}};
-	char *path = r->no_png ? NULL : scratch_path(r, "spheres.png", why);
+	char *path = r->no_png ? NULL : scratch_path(r, "spheres", why);
 	enum status status = r->no_png ? STATUS_UNSUPPORTED : STATUS_NO_MEMORY;
 	if (r->no_png)
 		*why = r->missing_png;
@@ -106,6 +106,10 @@ static bool draw_spheres(struct report *r, const struct material_data *data, str
 	if (status == STATUS_OK) {
 		picture->path = path;
 		picture->caption = *caption;
+		picture->parts = 1 + data->n;
+		picture->part[0] = "as measured.";
+		for (int f = 0; f < data->n; f++)
+			picture->part[1 + f] = data->fit[f].ndf;
 		return true;
 	}
 	free(path);
@@ -123,8 +127,10 @@ static bool draw_spheres(struct report *r, const struct material_data *data, str
 static bool draw_plots(struct report *r, const struct material_data *data, struct page_picture picture[PICTURES],
 		       struct error *why)
 {
-	static const char *const name[PICTURES] = {
-		[PICTURE_SLICES] = "slices.svg", [PICTURE_MAP] = "map.png", [PICTURE_NDF] = "ndf.svg"};
+	static const char *const name[PICTURES] = {[PICTURE_SLICES] = "slices.png",
+						   [PICTURE_SLICES_0] = "slices_0.png",
+						   [PICTURE_MAP] = "map.png",
+						   [PICTURE_NDF] = "ndf.svg"};
 	if (plot_material(r->scratch.path, data, why) != STATUS_OK) {
 		report_failure(r, why);
 		return false;

@@ -109,13 +109,13 @@ static double lifted(const struct bundle *b, const struct bundle_cut *cut)
 	return ROUNDING * sum;
 }
 
-/* The value of a cut at the best point. */
-static double cut_at_best(const struct bundle *b, const struct bundle_cut *cut)
+/* The value of a cut at a point, less what rounding may have lifted it. */
+static double cut_at(const struct bundle *b, const struct bundle_cut *cut, const double x[])
 {
 	double value = cut->error - lifted(b, cut);
 
 	for (int i = 0; i < b->domain.n; i++)
-		value += cut->slope[i] * (b->best[i] - cut->x[i]);
+		value += cut->slope[i] * (x[i] - cut->x[i]);
 	return value;
 }
 
@@ -243,7 +243,7 @@ static double proven(const struct bundle *b, const struct whitened *w, const str
 	for (int n = 0; n < b->n_cuts; n++) {
 		const double share = cuts[n] / sum;
 
-		value += share * cut_at_best(b, &b->cut[n]);
+		value += share * cut_at(b, &b->cut[n], b->best);
 		for (int i = 0; i < domain->n; i++)
 			plane[i] += share * b->cut[n].slope[i];
 	}
@@ -274,7 +274,7 @@ static double bundle_step(const struct bundle *b, double hold, double unit, doub
 
 		for (int i = 0; i < b->domain.n; i++)
 			normal[i] = -cut->slope[i] / unit;
-		add_row(&p, &w, normal, (cut_at_best(b, cut) - b->error) / unit);
+		add_row(&p, &w, normal, (cut_at(b, cut, b->best) - b->error) / unit);
 		p.normal[p.n_rows - 1][w.n] = 1 / level_weight;
 	}
 	p.z[w.n] = -1 / level_weight;
@@ -286,9 +286,15 @@ static double bundle_step(const struct bundle *b, double hold, double unit, doub
 /* Next to nothing of the second derivatives: what is left is the least of the cuts. */
 #define HARDLY 1e-8
 
+/* How far the least of the cuts may be below the best point: the unit of errors there. */
+static double unit_of_cuts(const struct bundle *b)
+{
+	return fmax(b->error - b->lower_bound, 0.01 * b->tolerance * b->scale);
+}
+
 static void prove(struct bundle *b)
 {
-	const double unit = fmax(b->error - b->lower_bound, 0.01 * b->tolerance * b->scale);
+	const double unit = unit_of_cuts(b);
 	double step[BUNDLE_VARIABLES];
 
 	if (unit > 0)
@@ -300,15 +306,9 @@ static void prove(struct bundle *b)
 /* Whether every cut leaves room at x for a value below the best. */
 static bool promising(const struct bundle *b, const double x[])
 {
-	for (int n = 0; n < b->n_cuts; n++) {
-		const struct bundle_cut *cut = &b->cut[n];
-		double value = cut->error - lifted(b, cut);
-
-		for (int i = 0; i < b->domain.n; i++)
-			value += cut->slope[i] * (x[i] - cut->x[i]);
-		if (value >= b->error)
+	for (int n = 0; n < b->n_cuts; n++)
+		if (cut_at(b, &b->cut[n], x) >= b->error)
 			return false;
-	}
 	return true;
 }
 
@@ -347,7 +347,7 @@ static bool is_new(const struct bundle *b, const double step[], double x[])
 /* Sets the next point: Newton's, which promises `gain`, or one that the cuts propose. Returns whether there is one. */
 static bool propose(struct bundle *b, const double newton[], double gain)
 {
-	const double unit = fmax(b->error - b->lower_bound, 0.01 * b->tolerance * b->scale);
+	const double unit = unit_of_cuts(b);
 	double x[BUNDLE_VARIABLES], step[BUNDLE_VARIABLES];
 	const bool near = b->certify && gain <= b->tolerance * b->scale;
 
@@ -409,7 +409,7 @@ static int place_for_cut(const struct bundle *b)
 	if (b->n_cuts < BUNDLE_CUTS)
 		return b->n_cuts;
 	for (int n = 0; n < b->n_cuts; n++) {
-		const double value = cut_at_best(b, &b->cut[n]);
+		const double value = cut_at(b, &b->cut[n], b->best);
 
 		if (value < least) {
 			least = value;
@@ -440,9 +440,8 @@ static bool add_cut(struct bundle *b, double error, const double slope[])
 }
 
 /* At x = lo, all but nothing, the slopes are the sums of the terms. A term that comes to more than twice what is measured
- * is worse than none: where the box goes far beyond that, the error at its far end would have no digit left for what is sought, and it is
- * cut off. A first guess gives the first term
- * and the others shares of what is measured. */
+ * is worse than none: where the box goes far beyond that, the error at its far end would have no digit left for what is
+ * sought, and it is cut off. A first guess gives the first term and the others shares of what is measured. */
 static void guess(struct bundle *b, double error, const double slope[])
 {
 	b->cold = false;

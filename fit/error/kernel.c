@@ -24,21 +24,9 @@ static inline float g1_at(const struct kernel_g1 *g1, const float *restrict valu
 
 /* The specular term as cook_torrance_from_G1() puts it together, in float and from tables;
  * kernel_and_metrics_match_the_reference in tests/test_objective.c holds both against cook_torrance_f(). */
-static void lobe_separable(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_samples *samples,
-			   float *restrict s)
-{
-	const struct kernel_g1 table = *g1;
-	const float *restrict value = g1->value, *restrict geometric_factor = samples->geometric_factor;
-	const int32_t *restrict q_i = samples->q_i, *restrict q_o = samples->q_o;
-	const uint16_t *restrict at = samples->row;
-
-#pragma omp simd
-	for (int n = 0; n < KERNEL_BLOCK; n++)
-		s[n] = geometric_factor[n] * row[at[n]] * g1_at(&table, value, q_i[n]) * g1_at(&table, value, q_o[n]);
-}
-
-static void lobe_correlated(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_samples *samples,
-			    float *restrict s)
+__attribute__((always_inline)) static inline void tabulated(enum kernel_gaf gaf, const struct kernel_g1 *g1,
+							    const float *restrict row,
+							    const struct kernel_samples *samples, float *restrict s)
 {
 	const struct kernel_g1 table = *g1;
 	const float *restrict value = g1->value, *restrict geometric_factor = samples->geometric_factor;
@@ -47,52 +35,38 @@ static void lobe_correlated(const struct kernel_g1 *g1, const float *restrict ro
 
 #pragma omp simd
 	for (int n = 0; n < KERNEL_BLOCK; n++) {
-		const float i = g1_at(&table, value, q_i[n]), o = g1_at(&table, value, q_o[n]);
-		/* 1/(1/i + 1/o - 1), without the division by a G1 that may be 0. */
-		const float below = i + o - i * o;
+		float f = geometric_factor[n] * row[at[n]];
 
-		s[n] = geometric_factor[n] * row[at[n]] * (below > 0 ? i * o / below : 0);
+		if (gaf != KERNEL_STATIC) {
+			const float i = g1_at(&table, value, q_i[n]), o = g1_at(&table, value, q_o[n]);
+			/* 1/(1/i + 1/o - 1), without the division by a G1 that may be 0. */
+			const float below = i + o - i * o;
+
+			if (gaf == KERNEL_SEPARABLE)
+				f = f * i * o;
+			else
+				f *= gaf == KERNEL_SUM ? i + o : below > 0 ? i * o / below : 0;
+		}
+		s[n] = f;
 	}
 }
 
-static void lobe_sum(const struct kernel_g1 *g1, const float *restrict row, const struct kernel_samples *samples,
-		     float *restrict s)
-{
-	const struct kernel_g1 table = *g1;
-	const float *restrict value = g1->value, *restrict geometric_factor = samples->geometric_factor;
-	const int32_t *restrict q_i = samples->q_i, *restrict q_o = samples->q_o;
-	const uint16_t *restrict at = samples->row;
-
-#pragma omp simd
-	for (int n = 0; n < KERNEL_BLOCK; n++)
-		s[n] = geometric_factor[n] * row[at[n]] * (g1_at(&table, value, q_i[n]) + g1_at(&table, value, q_o[n]));
-}
-
-static void lobe_static(const float *restrict row, const struct kernel_samples *samples, float *restrict s)
-{
-	const float *restrict geometric_factor = samples->geometric_factor;
-	const uint16_t *restrict at = samples->row;
-
-#pragma omp simd
-	for (int n = 0; n < KERNEL_BLOCK; n++)
-		s[n] = geometric_factor[n] * row[at[n]];
-}
-
+/* Each form of G gets a loop of its own. */
 static void lobe(enum kernel_gaf gaf, const struct kernel_g1 *g1, const float *row,
 		 const struct kernel_samples *samples, float *s)
 {
 	switch (gaf) {
 	case KERNEL_SEPARABLE:
-		lobe_separable(g1, row, samples, s);
+		tabulated(KERNEL_SEPARABLE, g1, row, samples, s);
 		break;
 	case KERNEL_CORRELATED:
-		lobe_correlated(g1, row, samples, s);
+		tabulated(KERNEL_CORRELATED, g1, row, samples, s);
 		break;
 	case KERNEL_SUM:
-		lobe_sum(g1, row, samples, s);
+		tabulated(KERNEL_SUM, g1, row, samples, s);
 		break;
 	case KERNEL_STATIC:
-		lobe_static(row, samples, s);
+		tabulated(KERNEL_STATIC, g1, row, samples, s);
 		break;
 	}
 }
@@ -140,7 +114,7 @@ __attribute__((always_inline)) static inline void scattered(enum kernel_gaf gaf,
 				    o = curve_at(&of.G1, G1, form_at(&of.masking, o_x[n], o_y[n])),
 				    below = i + o - i * o;
 
-			/* As in lobe_correlated(). */
+			/* As in tabulated(). */
 			G = gaf == KERNEL_SEPARABLE ? i * o : below > 0 ? i * o / below : 0;
 		}
 		const float P = of.scale * curve_at(&of.P22, P22, form_at(&of.slopes, h_x[n], h_y[n]));
@@ -174,9 +148,6 @@ typedef int32_t lanes_int __attribute__((vector_size(32), may_alias));
 typedef double lanes_double __attribute__((vector_size(64)));
 enum { LANES = 8 };
 
-/* Loops over terms have constant bounds: unrolled, each term has registers of its own. */
-#define UNROLL _Pragma("GCC unroll 16")
-
 struct lane_evaluation {
 	lanes x[KERNEL_TERMS], tau, floor;
 };
@@ -202,8 +173,7 @@ __attribute__((always_inline)) static inline void add_lanes(int terms, int membe
 
 	a[0] = *(const lanes *)(term[0] + from);
 	f = at->x[0] * a[0];
-	UNROLL for (int t = 1; t < terms; t++)
-	{
+	for (int t = 1; t < terms; t++) {
 		a[t] = *(const lanes *)(term[t] + from);
 		f += at->x[t] * a[t];
 	}
@@ -211,8 +181,7 @@ __attribute__((always_inline)) static inline void add_lanes(int terms, int membe
 	/* Half of sum sign(r): half of the members, less 1 for each below the model. */
 	lanes_int whole = (lanes_int){0} + members / 2, near = {0};
 
-	UNROLL for (int n = 0; n < members; n++)
-	{
+	for (int n = 0; n < members; n++) {
 		const lanes r = *(const lanes *)(m + from + n * KERNEL_BLOCK) - f;
 		const lanes size = (lanes)((lanes_int)r & 0x7fffffff);
 
@@ -225,16 +194,17 @@ __attribute__((always_inline)) static inline void add_lanes(int terms, int membe
 
 	if (members % 2)
 		half += 0.5F;
-	UNROLL for (int t = 0; t < terms; t++) sum->slope[t] += half * a[t];
+	for (int t = 0; t < terms; t++)
+		sum->slope[t] += half * a[t];
 	if (curved) {
 		const lanes density = -__builtin_convertvector(near, lanes) * rough_inverse(wide);
 		int second = 0;
 
-		UNROLL for (int t = 0; t < terms; t++)
-		{
+		for (int t = 0; t < terms; t++) {
 			const lanes part = density * a[t];
 
-			UNROLL for (int u = t; u < terms; u++) sum->curvature[second++] += part * a[u];
+			for (int u = t; u < terms; u++)
+				sum->curvature[second++] += part * a[u];
 		}
 	}
 }
@@ -273,10 +243,11 @@ __attribute__((always_inline)) static inline void run(int terms, int members, bo
 		add_lanes(terms, members, curved, m, term, n + LANES, at, &b);
 	}
 	sums->error += widen(a.error, b.error);
-	UNROLL for (int t = 0; t < terms; t++) sums->slope[t] += widen(a.slope[t], b.slope[t]);
+	for (int t = 0; t < terms; t++)
+		sums->slope[t] += widen(a.slope[t], b.slope[t]);
 	if (curved)
-		UNROLL for (int t = 0; t < terms * (terms + 1) / 2; t++) sums->curvature[t] +=
-			widen(a.curvature[t], b.curvature[t]);
+		for (int t = 0; t < terms * (terms + 1) / 2; t++)
+			sums->curvature[t] += widen(a.curvature[t], b.curvature[t]);
 }
 
 __attribute__((always_inline)) static inline void block(int terms, int members, bool curved, const float *m,

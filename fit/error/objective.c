@@ -24,11 +24,16 @@ struct term_list term_list_of(const struct fit_options *options)
 	return list;
 }
 
+static bool has_term(const struct objective *o, enum term term)
+{
+	for (int t = 0; t < o->terms.n; t++)
+		if (o->terms.term[t] == term)
+			return true;
+	return false;
+}
+
 static enum status init_tables(struct objective *o, enum masking_density density)
 {
-	const bool second =
-		o->terms.term[o->terms.n - 1] == TERM_SECOND || o->terms.term[o->terms.n - 2] == TERM_SECOND;
-	const bool grazing = o->terms.term[o->terms.n - 1] == TERM_GRAZING;
 	const int32_t q_min = o->table->geometry->q_min;
 	enum status status = STATUS_OK;
 
@@ -40,9 +45,9 @@ static enum status init_tables(struct objective *o, enum masking_density density
 		return status;
 	}
 	status = masking_init(&o->lobe[0].masking, q_min, density);
-	if (status == STATUS_OK && second)
+	if (status == STATUS_OK && has_term(o, TERM_SECOND))
 		status = masking_init(&o->lobe[1].masking, q_min, density);
-	if (status == STATUS_OK && grazing)
+	if (status == STATUS_OK && has_term(o, TERM_GRAZING))
 		status = masking_init(&o->grazing, q_min, density);
 	return status;
 }
@@ -58,8 +63,7 @@ enum status objective_init(struct objective *o, const struct sample_set *table, 
 				.class = class,
 				.kernel = kernel_pick(),
 				.threads = threads,
-				.terms = term_list_of(options),
-				.n_slices = options->gray ? 1 : MERL_CHANNELS};
+				.terms = term_list_of(options)};
 	o->lobe[0].tabulated.sigma = o->lobe[1].tabulated.sigma = o->grazing_exponent = NAN;
 	objective_forget(o);
 	objective_unfix(o);
@@ -212,16 +216,14 @@ static double grazing_of(double cot, const void *exponent)
 
 static enum status tabulate(struct objective *o, const struct shape *shape)
 {
-	const enum term last = o->terms.term[o->terms.n - 1];
-	const bool grazing = last == TERM_GRAZING;
 	enum status status = tabulate_lobe(o, 0, shape);
 
-	if (status == STATUS_OK && o->terms.term[o->terms.n - 1 - grazing] == TERM_SECOND) {
+	if (status == STATUS_OK && has_term(o, TERM_SECOND)) {
 		const struct shape second = shape_second(shape);
 
 		status = tabulate_lobe(o, 1, &second);
 	}
-	if (grazing && !o->table->scattered && shape->grazing != o->grazing_exponent) {
+	if (has_term(o, TERM_GRAZING) && !o->table->scattered && shape->grazing != o->grazing_exponent) {
 		masking_fill_function(&o->grazing, grazing_of, &shape->grazing, 0);
 		o->grazing_exponent = shape->grazing;
 	}
@@ -360,7 +362,13 @@ static void lobe_block(struct objective *o, int block)
 			scattered_block(o, t, block);
 }
 
-/* What a pass is asked for each slice: a channel, or one that stands for all. */
+/* A solve goes over slices: a channel each, or one that stands for all. */
+static int n_slices(const struct objective *o)
+{
+	return o->options->gray ? 1 : MERL_CHANNELS;
+}
+
+/* What a pass is asked for each slice. */
 struct evaluation {
 	bool wanted[MERL_CHANNELS];
 	struct kernel_evaluation at[MERL_CHANNELS];
@@ -370,12 +378,12 @@ static void pass_block(struct objective *o, const struct evaluation *asked, int 
 {
 	const struct sample_set *t = o->table;
 	const size_t at = (size_t)block * KERNEL_BLOCK;
-	const int members = (block < t->n_pair_blocks ? 2 : 1) * MERL_CHANNELS / o->n_slices;
+	const int members = (block < t->n_pair_blocks ? 2 : 1) * MERL_CHANNELS / n_slices(o);
 	const float *term[KERNEL_TERMS] = {t->w + at};
 
 	for (int n = 1; n < o->terms.n; n++)
 		term[n] = o->term[n] + at;
-	for (int c = 0; c < o->n_slices; c++)
+	for (int c = 0; c < n_slices(o); c++)
 		if (asked->wanted[c])
 			o->kernel->pass(o->terms.n, members, sample_set_value(t, block, c), term, &asked->at[c],
 					&o->sums[block][c]);
@@ -386,7 +394,7 @@ static struct evaluation in_unit(const struct objective *o, const struct evaluat
 {
 	struct evaluation own = *asked;
 
-	for (int c = 0; c < o->n_slices; c++) {
+	for (int c = 0; c < n_slices(o); c++) {
 		for (int t = 0; t < o->terms.n; t++)
 			own.at[c].x[t] *= o->table->unit;
 		own.at[c].floor *= o->table->unit;
@@ -434,7 +442,7 @@ static void pass(struct objective *o, const struct evaluation *wanted, bool lobe
 		pass_block(o, asked, (int)block);
 	}
 #pragma GCC diagnostic pop
-	for (int c = 0; c < o->n_slices; c++)
+	for (int c = 0; c < n_slices(o); c++)
 		if (asked->wanted[c])
 			total[c] = add_blocks(o, c);
 }
@@ -513,7 +521,7 @@ static bool helps(const struct shape *a, const struct shape *b)
 /* The problems that a solve falls into: one a slice, or one for all where the slices share coefficients. */
 static int n_problems(const struct objective *o)
 {
-	return is_joint(o) ? 1 : o->n_slices;
+	return is_joint(o) ? 1 : n_slices(o);
 }
 
 /* The unknown of a problem that a slice's coefficient is. Where they share, kd of each channel comes first. */
@@ -535,7 +543,7 @@ static int first_slice(const struct objective *o, int p)
 
 static int end_slice(const struct objective *o, int p)
 {
-	return is_joint(o) ? o->n_slices : p + 1;
+	return is_joint(o) ? n_slices(o) : p + 1;
 }
 
 static double sum_measured(const struct objective *o, int p)
@@ -633,8 +641,8 @@ static void finish(const struct objective *o, const struct bundle problem[], str
 
 	*linear = (struct linear){.error = 0};
 	for (int c = 0; c < MERL_CHANNELS; c++) {
-		const int slice = c < o->n_slices ? c : 0;
-		const struct bundle *p = &problem[n_problems(o) == 1 ? 0 : c];
+		const int slice = c < n_slices(o) ? c : 0;
+		const struct bundle *p = &problem[is_joint(o) ? 0 : slice];
 
 		for (int t = 0; t < o->terms.n; t++)
 			linear->coefficient[c][t] = p->best[unknown_of(o, slice, t)];
@@ -734,12 +742,12 @@ double objective_error(struct objective *o, const struct shape *shape, const str
 	if (tabulate(o, shape) != STATUS_OK)
 		return OBJECTIVE_NO_FIT;
 	fill_rows(o, shape);
-	for (int c = 0; c < o->n_slices; c++) {
+	for (int c = 0; c < n_slices(o); c++) {
 		asked.wanted[c] = true;
 		memcpy(asked.at[c].x, linear->coefficient[c], sizeof asked.at[c].x);
 	}
 	pass(o, &asked, true, total);
-	for (int c = 0; c < o->n_slices; c++)
+	for (int c = 0; c < n_slices(o); c++)
 		error += total[c].error;
 	for (int c = 0; c < MERL_CHANNELS; c++)
 		sum += o->table->sum[c];

@@ -74,7 +74,6 @@ struct objective {
 	const struct kernel *kernel;
 	int threads; /* more than 1: called by one thread of an OpenMP team, whose others help */
 	struct term_list terms;
-	int n_slices; /* channels solved for: 3, or 1 that stands for all */
 	struct objective_lobe {
 		struct masking masking; /* G1 of the shape */
 		double D[MERL_THETA_H];

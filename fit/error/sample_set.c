@@ -284,11 +284,12 @@ static void fill_row(struct sample_set *table, const struct measurement *measure
 	}
 }
 
-/* A mean measurement below FAINT asks for another unit: arithmetic on what is too small for a normal float is a hundred
- * times slower, and inexact. FAINT_UNIT is far above what that takes, and far below where the lobe of the largest D and
- * geometric factor, 1e25, overflows. */
-#define FAINT 1e-15
-#define FAINT_UNIT 0x1p40
+bool sample_set_is_faint(const struct sample_set *table)
+{
+	const double faint = 1e-15;
+
+	return table->sum[0] + table->sum[1] + table->sum[2] < faint * table->sum_w;
+}
 
 /* Fills in all samples; those of theta_h index i go where fill[i] says. */
 static void take_values(struct sample_set *table, const struct measurement *measurement, int threads,
@@ -362,8 +363,8 @@ static enum status take_table(struct sample_set *table, const struct geometry *g
 	for (int i = 0; i < MERL_THETA_H; i++)
 		fill[i].single += (size_t)table->n_pair_blocks * KERNEL_BLOCK;
 	take_values(table, measurement, threads, fill);
-	if (table->sum[0] + table->sum[1] + table->sum[2] < FAINT * table->sum_w) {
-		table->unit = FAINT_UNIT;
+	if (sample_set_is_faint(table)) {
+		table->unit = SAMPLE_SET_FAINT_UNIT;
 		take_values(table, measurement, threads, fill);
 	}
 	*pairs = n_pairs;

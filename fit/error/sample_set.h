@@ -64,6 +64,12 @@ struct sample_set {
  * criterion's max_theta, and *measurement has to outlive the table then. STATUS_NO_DATA when there is none or all are zero. */
 MUST_CHECK enum status sample_set_init(struct sample_set *table, const struct geometry *geometry,
 				       const struct measurement *measurement, int threads);
+/* sample_set_is_faint - whether the mean measurement asks for another unit: arithmetic on what is too small for a normal float is
+ * a hundred times slower, and inexact. */
+bool sample_set_is_faint(const struct sample_set *table);
+/* The unit of such data: far above what that takes, and far below where the lobe of the largest D and geometric factor, 1e25,
+ * overflows. */
+#define SAMPLE_SET_FAINT_UNIT 0x1p40
 /* sample_set_scattered - the part of sample_set_init() that does the scattered ones, less what is common to both. */
 MUST_CHECK enum status sample_set_scattered(struct sample_set *table, const struct geometry *geometry,
 					    const struct scattered *scattered);

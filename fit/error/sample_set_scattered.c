@@ -86,9 +86,19 @@ static void put(struct sample_set *table, size_t n, uint32_t entry)
 	for (int c = 0; c < MERL_CHANNELS; c++) {
 		float *value = sample_set_value(table, (int)(n / KERNEL_BLOCK), c) + n % KERNEL_BLOCK;
 
-		*value = table->w[n] * s->value[c][entry];
-		table->sum[c] += (double)*value;
+		*value = table->w[n] * (s->value[c][entry] * (float)table->unit);
+		table->sum[c] += (double)*value / table->unit;
 	}
+}
+
+static void put_all(struct sample_set *table, const struct place *place, size_t count)
+{
+	table->range = (struct sample_range){INFINITY, 0, INFINITY, 0, 1};
+	table->sum_w = 0;
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		table->sum[c] = 0;
+	for (size_t n = 0; n < count; n++)
+		put(table, n, place[n].entry);
 }
 
 enum status sample_set_scattered(struct sample_set *table, const struct geometry *g, const struct scattered *s)
@@ -102,9 +112,11 @@ enum status sample_set_scattered(struct sample_set *table, const struct geometry
 	if (status == STATUS_OK)
 		status = sample_set_alloc(table, g, s, 0, (int)count);
 	if (status == STATUS_OK)
-		table->range = (struct sample_range){INFINITY, 0, INFINITY, 0, 1};
-	for (size_t n = 0; n < count && status == STATUS_OK; n++)
-		put(table, n, place[n].entry);
+		put_all(table, place, count);
+	if (status == STATUS_OK && sample_set_is_faint(table)) {
+		table->unit = SAMPLE_SET_FAINT_UNIT;
+		put_all(table, place, count);
+	}
 	free(place);
 	return status;
 }

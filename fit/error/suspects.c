@@ -2,6 +2,7 @@
 #include "fit/error/suspects.h"
 #include "fit/error/entries.h"
 #include "fit/error/sample_set.h"
+#include "fit/error/scattered_albedo.h"
 #include <gsl/gsl_statistics_float.h>
 #include <math.h>
 #include <stdarg.h>
@@ -31,6 +32,8 @@ enum {
 	SAMPLED = 4096,   /* values that the median is of */
 	PHI_STEPS = 24,   /* of half a turn of phi_h, in the integral of an albedo */
 };
+
+static const double albedo_theta_i[SUSPECTS_ALBEDOS] = {0, M_PI / 6, M_PI / 3};
 
 /* Entries of a row of half a turn, first .. last, are in range. */
 struct half_row {
@@ -466,16 +469,14 @@ static unsigned judge_values(const struct tally *t, struct suspects *s)
 	return found;
 }
 
-void suspects_find(const struct measurement *measurement, const struct criterion *criterion, struct suspects *suspects)
+enum status suspects_find(const struct measurement *measurement, const struct criterion *criterion,
+			  struct suspects *suspects)
 {
-	static const double theta_i[SUSPECTS_ALBEDOS] = {0, M_PI / 6, M_PI / 3};
-	static const struct suspects unknown = {.ends_at = NAN,
-						.albedo = {{NAN, NAN, NAN}, {NAN, NAN, NAN}, {NAN, NAN, NAN}},
-						.measured = {NAN, NAN, NAN}};
-
+	*suspects = (struct suspects){.ends_at = NAN};
 	if (measurement->scattered) {
-		*suspects = unknown;
-		return;
+		const enum status status = scattered_albedo(measurement, albedo_theta_i, suspects);
+		suspects->found = status == STATUS_OK ? judge_albedo(suspects) : 0;
+		return status;
 	}
 	struct tally t = {.measurement = measurement,
 			  .bins = criterion->bins,
@@ -483,15 +484,15 @@ void suspects_find(const struct measurement *measurement, const struct criterion
 			  .min_cos = fmax(max_theta_cos(criterion->max_theta), 1e-9),
 			  .zero_is_missing = criterion->zero_is_missing};
 
-	*suspects = (struct suspects){.ends_at = NAN};
 	count_all(&t);
 	for (int a = 0; a < SUSPECTS_ALBEDOS; a++)
-		find_albedo(&t, theta_i[a], suspects->albedo[a], &suspects->measured[a]);
+		find_albedo(&t, albedo_theta_i[a], suspects->albedo[a], &suspects->measured[a]);
 	suspects->found = judge_zeros(&t, suspects) | judge_albedo(suspects) | judge_directions(&t, suspects) |
 			  judge_values(&t, suspects);
 	/* Of values that stand in wrong places nothing else is to be said. */
 	if (suspects->found & SUSPECT_INTERLEAVED)
 		suspects->found = SUSPECT_INTERLEAVED;
+	return STATUS_OK;
 }
 
 const char *suspects_words(const struct suspects *suspects, char text[SUSPECTS_WORDS])

@@ -37,9 +37,11 @@ struct suspects {
 };
 
 /* suspects_find - looks at the entries that the criterion takes: its bins, max_theta and zero_is_missing. Some 3 ms; takes
- * no memory. The albedos are of all entries, whatever max_theta is. Of scattered entries nothing is found: albedos,
- * shares and ends_at are NaN. */
-void suspects_find(const struct measurement *measurement, const struct criterion *criterion, struct suspects *suspects);
+ * no memory. The albedos are of all entries, whatever max_theta is. Of scattered entries the albedos, interpolated
+ * [interpolant.h], and what they tell: bright and dark; they take some 30 ms, and of a sample that turns they are means over
+ * its azimuths. ends_at is the largest theta_i or theta_o that was measured, NaN from 89 degrees on. STATUS_NO_MEMORY. */
+MUST_CHECK enum status suspects_find(const struct measurement *measurement, const struct criterion *criterion,
+				     struct suspects *suspects);
 
 enum { SUSPECTS_WORDS = 128, SUSPECTS_TEXT = 640 };
 /* suspects_words - the kinds as short words joined by +, as in "zeros+wedge"; "" if none. Returns text. */

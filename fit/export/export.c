@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "data_readers/text_quote.h"
+#include "fit/error/entries.h"
 #include "fit/error/model_table.h"
+#include "fit/error/sample_set.h"
 #include "fit/export/export_format.h"
 #include "fit/results/csv_number.h"
 
@@ -9,7 +11,7 @@
 static const struct export_target *const targets[EXPORT_FORMATS] = {
 	[EXPORT_BRDF] = &export_brdf, [EXPORT_MERL] = &export_merl,         [EXPORT_MITSUBA] = &export_mitsuba,
 	[EXPORT_PBRT] = &export_pbrt, [EXPORT_GLTF] = &export_gltf,         [EXPORT_JSON] = &export_json,
-	[EXPORT_BSDF] = &export_bsdf, [EXPORT_BSDF_RGB] = &export_bsdf_rgb,
+	[EXPORT_BSDF] = &export_bsdf, [EXPORT_BSDF_RGB] = &export_bsdf_rgb, [EXPORT_MATERIALX] = &export_materialx,
 };
 
 const char *export_format_name(enum export_format format)
@@ -32,6 +34,11 @@ bool export_wants_samples(enum export_format format, const struct cook_torrance 
 	return targets[format]->replaces && targets[format]->replaces(model);
 }
 
+bool export_has_substitutes(enum export_format format)
+{
+	return targets[format]->replaces != NULL;
+}
+
 bool export_is_binary(enum export_format format)
 {
 	return format == EXPORT_MERL || format == EXPORT_BSDF || format == EXPORT_BSDF_RGB;
@@ -41,8 +48,6 @@ enum status export_prepare(struct export *export, enum export_format format, con
 			   struct error *error)
 {
 	*export = (struct export){.format = format, .source = *source, .model = *source->model};
-	if (source->model->ndf.sigma_x != source->model->ndf.sigma_y)
-		return error_set(error, STATUS_UNSUPPORTED, "an anisotropic model cannot be exported");
 	return targets[format]->prepare(export, error);
 }
 
@@ -57,6 +62,39 @@ enum status export_table(const struct export *export, struct measurement *measur
 			   measurement);
 }
 
+bool export_shows_model(const struct export *export)
+{
+	return !targets[export->format]->shows;
+}
+
+enum status export_shown_table(const struct export *export, struct measurement *measurement)
+{
+	const int n_phi_d = 180;
+	const struct entries entries = entries_make(export->source.fit->criterion.bins, n_phi_d);
+	const enum status status = measurement_alloc(measurement, n_phi_d);
+	if (status != STATUS_OK)
+		return status;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(export->source.fit->threads)
+	for (int i = 0; i < MERL_THETA_H; i++)
+		for (int jk = 0; jk < MERL_THETA_D * n_phi_d; jk++) {
+			const int j = jk / n_phi_d, k = jk % n_phi_d;
+			struct vec3 wi, wo;
+			double f[3];
+			entries_dirs(&entries, i, j, k, &wi, &wo);
+			if (!entry_in_range(wi, wo, 0))
+				continue;
+			targets[export->format]->shows(&export->model, wi, wo, f);
+			for (int c = 0; c < MERL_CHANNELS; c++)
+				measurement->value[c][measurement_at(n_phi_d, i, j, k)] = (float)f[c];
+		}
+	return STATUS_OK;
+}
+
+bool export_has_axes(const struct cook_torrance *model)
+{
+	return export_max(model->ks) > 0 && model->ndf.sigma_x != model->ndf.sigma_y;
+}
+
 enum status export_as_it_is(struct export *export, const char *text)
 {
 	snprintf(export->why, sizeof export->why, "exact: %.480s", text);
@@ -66,7 +104,9 @@ enum status export_as_it_is(struct export *export, const char *text)
 static enum status merl_prepare(struct export *export, struct error *error)
 {
 	char text[EXPORT_TEXT];
-	(void)error;
+	if (export_has_axes(&export->model))
+		return error_set(error, STATUS_UNSUPPORTED,
+				 "a MERL file is isotropic, the model is not (--format bsdf has every model)");
 	snprintf(text, sizeof text, "the model at the entries of the table (%s bins), to the 24 bits of a float",
 		 bins_name(export->source.fit->criterion.bins));
 	return export_as_it_is(export, text);
@@ -88,9 +128,16 @@ void export_describe(const struct export *export, char text[EXPORT_TEXT])
 		return;
 	}
 	used = snprintf(text, EXPORT_TEXT, "%s: %s", name, ndf_name(model->ndf.class));
-	for (int i = 0; ndf_param_at(model->ndf.class, i); i++)
+	const bool axes = export_has_axes(model);
+	for (int i = axes; ndf_param_at(model->ndf.class, i); i++)
 		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " %s %s",
 				 ndf_param_at(model->ndf.class, i)->name, csv_number(number, model->ndf.param[i]));
+	if (axes) {
+		char sigma_y[CSV_NUMBER_SIZE], angle[CSV_NUMBER_SIZE];
+		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " sigma_x %s sigma_y %s angle %s",
+				 csv_number(number, model->ndf.sigma_x), csv_number(sigma_y, model->ndf.sigma_y),
+				 csv_number(angle, model->ndf.angle));
+	}
 	used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", %s G, %s F", gaf_name(model->gaf),
 			 fresnel_name(model->fresnel));
 	if (model->fresnel != FRESNEL_NONE)
@@ -113,9 +160,22 @@ void export_comment(const struct export *export, FILE *file, const char *before,
 	comment_line(file, before, export->why, after);
 	if (*export->cost)
 		comment_line(file, before, export->cost, after);
+	if (*export->pictures)
+		comment_line(file, before, export->pictures, after);
 	export_describe(export, text);
 	comment_line(file, before, text, after);
 	snprintf(text, sizeof text, "written by stdfit %s", STDFIT_VERSION);
+	comment_line(file, before, text, after);
+}
+
+void export_comment_axes(const struct export *export, FILE *file, const char *before, const char *along,
+			 const char *after)
+{
+	char text[EXPORT_TEXT], angle[CSV_NUMBER_SIZE];
+	if (!export_has_axes(&export->model))
+		return;
+	snprintf(text, sizeof text, "%.200s, which has to lie at azimuth %s degrees of the sample", along,
+		 csv_number(angle, export->model.ndf.angle));
 	comment_line(file, before, text, after);
 }
 

@@ -10,27 +10,29 @@
 #include <stdio.h>
 
 enum export_format {
-	EXPORT_BRDF,     /* BRDF Explorer, GLSL: every model */
-	EXPORT_MERL,     /* MERL .binary: every model, to the resolution of the table */
-	EXPORT_MITSUBA,  /* Mitsuba 3, XML: Lambert and GGX or Beckmann, uncorrelated G */
-	EXPORT_PBRT,     /* pbrt-v4: Lambert and GGX, correlated G, one ks for all channels */
-	EXPORT_GLTF,     /* glTF 2.0: always approximate */
+	EXPORT_BRDF,      /* BRDF Explorer, GLSL: every model */
+	EXPORT_MERL,      /* MERL .binary: every model, to the resolution of the table */
+	EXPORT_MITSUBA,   /* Mitsuba 3, XML: Lambert and GGX or Beckmann, uncorrelated G */
+	EXPORT_PBRT,      /* pbrt-v4: Lambert and GGX, correlated G, one ks for all channels */
+	EXPORT_GLTF,      /* glTF 2.0: always approximate */
+	EXPORT_MATERIALX, /* MaterialX 1.39: Lambert and GGX, correlated G, every F */
 	EXPORT_BSDF,     /* RGL tensor_file with spectra: pbrt-v4 and the spectral variants of Mitsuba 3, every model */
 	EXPORT_BSDF_RGB, /* the same with rgb: the rgb variants of Mitsuba 3 */
 	EXPORT_JSON,     /* our own (model_json.h): every model */
 	EXPORT_FORMATS
 };
 
-/* export_format_name - "brdf", "merl", "mitsuba", "pbrt", "gltf", "bsdf", "bsdf-rgb", "json"; "unknown" for any other value. */
+/* export_format_name - "brdf", "merl", "mitsuba", "pbrt", "gltf", "materialx", "bsdf", "bsdf-rgb", "json"; "unknown" for any other value. */
 const char *export_format_name(enum export_format format);
 /* export_format_find - the reverse. Returns STATUS_DOMAIN, *format untouched, for another name. */
 MUST_CHECK enum status export_format_find(const char *name, enum export_format *format);
 
 /* struct export_source - a model and where it is from; all borrowed. */
 struct export_source {
-	const struct cook_torrance *model;     /* isotropic */
+	const struct cook_torrance *model;
 	const struct fit_options *fit;         /* weight, bins and max_theta it was fitted under; threads; cancel */
 	double error;                          /* E under that weight; NaN: not known */
+	enum weight weight;                    /* that of a fit in the model's place */
 	const char *material, *path;           /* either may be NULL */
 	const struct measurement *measurement; /* what it was fitted to; NULL: not at hand */
 	double accuracy;                       /* EXPORT_BSDF: refined until the L1 error is this, percent, */
@@ -48,12 +50,16 @@ struct export
 	bool substitute;            /* the latter */
 	char why[EXPORT_TEXT];      /* one line: "exact: ..." or "approximate: ..." */
 	size_t nodes;               /* EXPORT_BSDF: half vectors along each side; 0 for others */
-	char cost[EXPORT_TEXT];     /* one line: what the substitute costs; "" if there is none */
+	char cost[EXPORT_TEXT];     /* one line: what the substitute costs in error; "" if there is none */
+	char pictures[EXPORT_TEXT]; /* one line that the caller may put there: how it looks; "" at first */
 };
 
 /* export_wants_samples - whether a model has to be fitted in the place of this one, for which the measurement would be
  * of use. */
 bool export_wants_samples(enum export_format format, const struct cook_torrance *model);
+
+/* export_has_substitutes - whether the format has models that cannot be expressed and are replaced. */
+bool export_has_substitutes(enum export_format format);
 
 /* export_prepare - decides what is written, and fits it if need be. *source and what it points to have to outlive
  * *export.
@@ -71,5 +77,12 @@ MUST_CHECK enum status export_write(const struct export *export, FILE *file, str
 
 /* export_table - EXPORT_MERL: the table to write, 180 entries along phi_d, to be freed with measurement_free(). */
 MUST_CHECK enum status export_table(const struct export *export, struct measurement *measurement);
+
+/* export_shows_model - whether what the target shows is export->model by cook_torrance_f(). */
+bool export_shows_model(const struct export *export);
+
+/* export_shown_table - a table, 180 entries along phi_d, of what the target shows, to be freed with measurement_free(). For
+ * isotropic models. */
+MUST_CHECK enum status export_shown_table(const struct export *export, struct measurement *measurement);
 
 #endif

@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* BRDF Explorer: GLSL of the whole model. GLSL has 32-bit floats and neither the Gamma function nor erf; so Gamma ratios
  * and normalisations are constants, and each formula is the one of src/ that loses the fewest digits, with as many terms
- * as a float can tell. Lambda without a closed form is a table (lambda_table.h). */
+ * as a float can tell. Lambda without a closed form is a table (lambda_table.h).
+ *
+ * The parameters are sliders. BRDF Explorer keeps six digits of them, so the shader has the fitted values with all their
+ * digits, too, and what follows from them, and uses those until a slider is moved. Sliders are floats: a `color` would be
+ * rounded to 16 bits and cut at 1. A Lambda in a table belongs to one shape, which has no sliders then. `gamma` is a name
+ * that BRDF Explorer's own shaders have. The format has a section for importance sampling, isFunc, but nothing of BRDF
+ * Explorer calls it, and a file with one is shown in plain green where it would be: there is none. */
 #include "fit/export/export_format.h"
 #include "fit/export/lambda_table.h"
 #include "fit/results/csv_number.h"
@@ -34,7 +40,7 @@ static enum lambda_kind lambda_kind(const struct ndf *ndf)
 {
 	if (ndf->lambda_form == LAMBDA_RATIONAL)
 		return LAMBDA_OF_EQ_22;
-	if (is_named(ndf, "ggx") || (is_student_t(ndf) && ndf->gamma == 2.0 && ndf->a == 1.0))
+	if (is_named(ndf, "ggx"))
 		return LAMBDA_OF_GGX;
 	if (isinf(ndf->gamma) && (is_named(ndf, "beckmann") || is_student_t(ndf)))
 		return LAMBDA_OF_BECKMANN;
@@ -58,13 +64,6 @@ static void constant(struct glsl *glsl, const char *name, double x)
 	fprintf(glsl->file, "const float %s = %s;\n", name, literal(glsl, text, x));
 }
 
-static void constant_rgb(struct glsl *glsl, const char *name, const double x[3])
-{
-	char text[3][CSV_NUMBER_SIZE];
-	fprintf(glsl->file, "const vec3 %s = vec3(%s, %s, %s);\n", name, literal(glsl, text[0], x[0]),
-		literal(glsl, text[1], x[1]), literal(glsl, text[2], x[2]));
-}
-
 static void constant_array(struct glsl *glsl, const char *name, const double *x, int n)
 {
 	char text[CSV_NUMBER_SIZE];
@@ -77,6 +76,96 @@ static void constant_array(struct glsl *glsl, const char *name, const double *x,
 static void lines(struct glsl *glsl, const char *text)
 {
 	fputs(text, glsl->file);
+}
+
+/* ---- Sliders ---- */
+
+/* Whether the shape can be changed: sigma, and gamma. */
+static bool slides_sigma(const struct ndf *ndf)
+{
+	return is_named(ndf, "ggx") || is_named(ndf, "beckmann") || is_student_t(ndf);
+}
+
+static bool slides_gamma(const struct ndf *ndf)
+{
+	return is_student_t(ndf) && isfinite(ndf->gamma) && ndf->lambda_form != LAMBDA_RATIONAL;
+}
+
+/* From a little below the value, if need be, to the first of the ends that is not below it. */
+static void slider(struct glsl *glsl, const char *name, double value, double min, double usual, double max)
+{
+	char text[3][CSV_NUMBER_SIZE];
+	const double end = value <= usual ? usual : value <= max ? max : 2 * value;
+	fprintf(glsl->file, "float %s %s %s %s\n", name, literal(glsl, text[0], fmin(min, value)),
+		literal(glsl, text[1], end), literal(glsl, text[2], value));
+}
+
+static void sliders_rgb(struct glsl *glsl, const char *name, const double rgb[3])
+{
+	for (int c = 0; c < 3; c++) {
+		char channel[16];
+		snprintf(channel, sizeof channel, "%s_%c", name, "rgb"[c]);
+		slider(glsl, channel, rgb[c], 0, 1, 1);
+	}
+}
+
+static void write_sliders(struct glsl *glsl)
+{
+	const struct cook_torrance *model = glsl->model;
+	const struct ndf *ndf = &model->ndf;
+	sliders_rgb(glsl, "kd", model->kd);
+	if (!(export_max(model->ks) > 0))
+		return;
+	sliders_rgb(glsl, "ks", model->ks);
+	if (slides_sigma(ndf) && export_has_axes(model)) {
+		slider(glsl, "sigma_x", ndf->sigma_x, 1e-4, 1, 4);
+		slider(glsl, "sigma_y", ndf->sigma_y, 1e-4, 1, 4);
+	} else if (slides_sigma(ndf)) {
+		slider(glsl, "sigma", ndf->sigma_x, 1e-4, 1, 4);
+	}
+	if (slides_gamma(ndf))
+		slider(glsl, "gamma_shape", ndf->gamma, is_named(ndf, "t-family") ? ndf->param[2] + 1e-4 : 1.5001, 10,
+		       1000);
+	if (model->fresnel != FRESNEL_NONE)
+		slider(glsl, "n", model->n, 1.0001, 3, 100);
+	if (model->fresnel == FRESNEL_CONDUCTOR)
+		slider(glsl, "k", model->k, 0, 10, 100);
+}
+
+/* A function that says whether one of two sliders, or the only one (`other` NULL), was moved. */
+static void write_moved(struct glsl *glsl, const char *function, const char *name, double value, const char *other,
+			double other_value)
+{
+	char text[CSV_NUMBER_SIZE];
+	fprintf(glsl->file, "bool %s()\n{\n\treturn mf_moved(%s, %s)", function, name, literal(glsl, text, value));
+	if (other)
+		fprintf(glsl->file, " || mf_moved(%s, %s)", other, literal(glsl, text, other_value));
+	lines(glsl, ";\n}\n\n");
+}
+
+static const char moved[] = "bool mf_moved(float slider, float value)\n{\n"
+			    "\treturn abs(slider - value) > 1e-5 * value;\n}\n\n";
+
+/* A number that follows from sliders: its value, until one was moved, after which it is the expression. */
+static void derived(struct glsl *glsl, const char *name, double value, const char *moved_function,
+		    const char *expression)
+{
+	char text[CSV_NUMBER_SIZE];
+	fprintf(glsl->file, "float %s()\n{\n\treturn %s() ? %s : %s;\n}\n\n", name, moved_function, expression,
+		literal(glsl, text, value));
+}
+
+static void derived_rgb(struct glsl *glsl, const char *name, const double rgb[3])
+{
+	char text[CSV_NUMBER_SIZE];
+	fprintf(glsl->file, "vec3 mf_%s()\n{\n\treturn vec3(", name);
+	for (int c = 0; c < 3; c++) {
+		const char channel = "rgb"[c];
+		literal(glsl, text, rgb[c]);
+		fprintf(glsl->file, "%smf_moved(%s_%c, %s) ? %s_%c : %s", c ? ",\n\t\t" : "", name, channel, text, name,
+			channel, text);
+	}
+	lines(glsl, ");\n}\n\n");
 }
 
 /* F */
@@ -92,43 +181,54 @@ static void write_fresnel(struct glsl *glsl)
 	}
 	if (model->fresnel == FRESNEL_SCHLICK) {
 		const double root = (n - 1) / (n + 1);
-		constant(glsl, "MF_F0", root * root);
-		lines(glsl, "\nfloat mf_F(float c)\n{\n\tfloat x = 1.0 - c;\n"
-			    "\treturn MF_F0 + (1.0 - MF_F0) * (x * x) * (x * x) * x;\n}\n\n");
+		write_moved(glsl, "mf_index_moved", "n", n, NULL, 0);
+		derived(glsl, "mf_F0", root * root, "mf_index_moved",
+			"(n - 1.0) / (n + 1.0) * ((n - 1.0) / (n + 1.0))");
+		lines(glsl, "float mf_F(float c)\n{\n\tfloat x = 1.0 - c;\n"
+			    "\treturn mf_F0() + (1.0 - mf_F0()) * (x * x) * (x * x) * x;\n}\n\n");
 		return;
 	}
-	/* The index m = n + i k. */
-	constant(glsl, "MF_M2", m2);
-	constant(glsl, "MF_M2_1", m2_1); /* m^2 - 1 without its cancellation */
+	/* The index m = n + i k; m^2 - 1 without its cancellation. */
 	if (model->fresnel == FRESNEL_DIELECTRIC) {
-		lines(glsl, "\nfloat mf_F(float c)\n{\n"
+		write_moved(glsl, "mf_index_moved", "n", n, NULL, 0);
+		derived(glsl, "mf_m2", m2, "mf_index_moved", "n * n");
+		derived(glsl, "mf_m2_1", m2_1, "mf_index_moved", "(n - 1.0) * (n + 1.0)");
+		lines(glsl, "float mf_F(float c)\n{\n"
+			    "\tfloat m2 = mf_m2();\n"
+			    "\tfloat m2_1 = mf_m2_1();\n"
 			    "\tfloat s2 = (1.0 - c) * (1.0 + c);\n"
-			    "\tfloat g2 = c * c < 0.5 ? MF_M2_1 + c * c : MF_M2 - s2;\n"
+			    "\tfloat g2 = c * c < 0.5 ? m2_1 + c * c : m2 - s2;\n"
 			    "\tif (c <= 0.0 || g2 < 0.0)\n\t\treturn 1.0;\n"
 			    "\tfloat g = sqrt(g2);\n"
-			    "\tfloat r_s = MF_M2_1 / (c + g) / (c + g);\n"
-			    "\tfloat r_p = MF_M2_1 / (MF_M2 * c + g) * ((MF_M2 * c * c - s2) / (MF_M2 * c + g));\n"
+			    "\tfloat r_s = m2_1 / (c + g) / (c + g);\n"
+			    "\tfloat r_p = m2_1 / (m2 * c + g) * ((m2 * c * c - s2) / (m2 * c + g));\n"
 			    "\treturn min(0.5 * (r_s * r_s + r_p * r_p), 1.0);\n}\n\n");
 		return;
 	}
-	constant(glsl, "MF_M2_I", 2 * n * k); /* imaginary part of m^2 */
-	constant(glsl, "MF_FRONT2", m2_1 * m2_1 + 4 * n * n * k * k);
-	lines(glsl, "\nfloat mf_F(float c)\n{\n"
+	write_moved(glsl, "mf_index_moved", "n", n, "k", k);
+	derived(glsl, "mf_m2", m2, "mf_index_moved", "(n - k) * (n + k)");
+	derived(glsl, "mf_m2_1", m2_1, "mf_index_moved", "(n - 1.0) * (n + 1.0) - k * k");
+	derived(glsl, "mf_m2_i", 2 * n * k, "mf_index_moved", "2.0 * n * k"); /* imaginary part of m^2 */
+	lines(glsl, "float mf_F(float c)\n{\n"
 		    "\tif (c <= 0.0)\n\t\treturn 1.0;\n"
+		    "\tfloat m2 = mf_m2();\n"
+		    "\tfloat m2_1 = mf_m2_1();\n"
+		    "\tfloat m2_i = mf_m2_i();\n"
+		    "\tfloat front2 = m2_1 * m2_1 + m2_i * m2_i;\n"
 		    "\tfloat s2 = (1.0 - c) * (1.0 + c);\n"
-		    "\tfloat re = c * c < 0.5 ? MF_M2_1 + c * c : MF_M2 - s2;\n"
-		    "\tfloat root = sqrt(0.5 * (sqrt(re * re + MF_M2_I * MF_M2_I) + abs(re)));\n"
-		    "\tfloat other = root > 0.0 ? 0.5 * MF_M2_I / root : 0.0;\n"
+		    "\tfloat re = c * c < 0.5 ? m2_1 + c * c : m2 - s2;\n"
+		    "\tfloat root = sqrt(0.5 * (sqrt(re * re + m2_i * m2_i) + abs(re)));\n"
+		    "\tfloat other = root > 0.0 ? 0.5 * m2_i / root : 0.0;\n"
 		    "\tfloat a = re >= 0.0 ? root : other;\n" /* sqrt(m^2 - s^2) = a + i b */
 		    "\tfloat b = re >= 0.0 ? other : root;\n"
 		    "\tfloat s_sum = (c + a) * (c + a) + b * b;\n"
-		    "\tfloat p_re = MF_M2 * c + a;\n"
-		    "\tfloat p_im = MF_M2_I * c + b;\n"
+		    "\tfloat p_re = m2 * c + a;\n"
+		    "\tfloat p_im = m2_i * c + b;\n"
 		    "\tfloat p_sum = p_re * p_re + p_im * p_im;\n"
-		    "\tfloat q_re = MF_M2 * c * c - s2;\n"
-		    "\tfloat q_im = MF_M2_I * c * c;\n"
-		    "\tfloat R_s = MF_FRONT2 / s_sum / s_sum;\n"
-		    "\tfloat R_p = MF_FRONT2 / p_sum * ((q_re * q_re + q_im * q_im) / p_sum);\n"
+		    "\tfloat q_re = m2 * c * c - s2;\n"
+		    "\tfloat q_im = m2_i * c * c;\n"
+		    "\tfloat R_s = front2 / s_sum / s_sum;\n"
+		    "\tfloat R_p = front2 / p_sum * ((q_re * q_re + q_im * q_im) / p_sum);\n"
 		    "\treturn min(0.5 * (R_s + R_p), 1.0);\n}\n\n");
 }
 
@@ -142,12 +242,49 @@ static const char log_1p[] =
 	"\treturn 2.0 * s * (1.0 + t * (1.0 / 3.0 + t * (1.0 / 5.0 + t * (1.0 / 7.0 + t * (1.0 / 9.0"
 	" + t * (1.0 / 11.0 + t * (1.0 / 13.0)))))));\n}\n\n";
 
+/* The roughness of the formulas: of an anisotropic distribution the geometric mean; lengths in x and y are scaled then. */
+static double roughness(const struct ndf *ndf)
+{
+	return ndf->sigma_x == ndf->sigma_y ? ndf->sigma_x : sqrt(ndf->sigma_x * ndf->sigma_y);
+}
+
+/* The roughness in terms of STD, and gamma - 1 where gamma has a slider. */
+static void write_shape(struct glsl *glsl)
+{
+	const struct ndf *ndf = &glsl->model->ndf;
+	const bool axes = export_has_axes(glsl->model), with_gamma = slides_gamma(ndf);
+	const char *sigma = axes ? "sqrt(sigma_x * sigma_y)" : "sigma", *moved_function = "mf_sigma_moved";
+	char expression[120], number[CSV_NUMBER_SIZE];
+	if (axes)
+		write_moved(glsl, "mf_sigma_moved", "sigma_x", ndf->sigma_x, "sigma_y", ndf->sigma_y);
+	else
+		write_moved(glsl, "mf_sigma_moved", "sigma", ndf->sigma_x, NULL, 0);
+	if (with_gamma) {
+		write_moved(glsl, "mf_gamma_moved", "gamma_shape", ndf->gamma, NULL, 0);
+		derived(glsl, "mf_gamma", ndf->gamma, "mf_gamma_moved", "gamma_shape");
+		derived(glsl, "mf_a", ndf->gamma - 1, "mf_gamma_moved", "gamma_shape - 1.0");
+	}
+	snprintf(expression, sizeof expression, "%s", sigma);
+	if (with_gamma && is_named(ndf, "hyper-cauchy"))
+		snprintf(expression, sizeof expression, "%s / sqrt(mf_a())", sigma);
+	else if (with_gamma && is_named(ndf, "t-family"))
+		snprintf(expression, sizeof expression, "%s * sqrt((mf_gamma() - %s) / mf_a())", sigma,
+			 literal(glsl, number, ndf->param[2]));
+	else if (ndf->stretch != 1)
+		snprintf(expression, sizeof expression, "%s / %s", sigma, literal(glsl, number, ndf->stretch));
+	if (with_gamma && !is_named(ndf, "std")) {
+		lines(glsl, "bool mf_shape_moved()\n{\n\treturn mf_sigma_moved() || mf_gamma_moved();\n}\n\n");
+		moved_function = "mf_shape_moved";
+	}
+	derived(glsl, "mf_sigma", roughness(ndf) / ndf->stretch, moved_function, expression);
+}
+
 static void write_D_tan(struct glsl *glsl, const char *returned)
 {
-	lines(glsl, "\nfloat mf_D(vec3 h)\n{\n"
+	lines(glsl, "float mf_D(vec3 h)\n{\n"
 		    "\tfloat z = max(h.z, 1e-9);\n"
-		    "\tfloat t = length(h.xy) / (MF_SIGMA * z);\n"
-		    "\tfloat w = 1.0 / (MF_SIGMA * z * z);\n");
+		    "\tfloat t = length(h.xy) / (mf_sigma() * z);\n"
+		    "\tfloat w = 1.0 / (mf_sigma() * z * z);\n");
 	fprintf(glsl->file, "\treturn %s;\n}\n\n", returned);
 }
 
@@ -182,40 +319,62 @@ static enum status write_D_pl(struct glsl *glsl, struct error *error)
 	return STATUS_OK;
 }
 
-static enum status write_D(struct glsl *glsl, struct error *error)
+static void write_D_gtr(struct glsl *glsl)
 {
 	const struct ndf *ndf = &glsl->model->ndf;
 	const double sigma = ndf->sigma_x;
+	constant(glsl, "MF_A", ndf->A);
+	constant(glsl, "MF_GAMMA", ndf->gamma);
+	constant(glsl, "MF_S", sigma > 1 ? (sigma - 1) * (sigma + 1) : (1 - sigma) * (1 + sigma) / sigma / sigma);
+	fprintf(glsl->file, "\nfloat mf_D(vec3 h)\n{\n\treturn MF_A * exp(-MF_GAMMA * mf_log_1p(MF_S * %s));\n}\n\n",
+		sigma > 1 ? "h.z * h.z" : "dot(h.xy, h.xy)");
+}
+
+static void write_D_low(struct glsl *glsl)
+{
+	const struct ndf *ndf = &glsl->model->ndf;
+	constant(glsl, "MF_A", ndf->A);
+	constant(glsl, "MF_B", ndf->param[0]);
+	constant(glsl, "MF_C", ndf->param[1]);
+	lines(glsl, "\nfloat mf_D(vec3 h)\n{\n"
+		    "\treturn MF_A * exp(-MF_C * mf_log_1p(MF_B * (dot(h.xy, h.xy) / (1.0 + h.z))));\n}\n\n");
+}
+
+/* Of GGX, Beckmann and the Student-t family. */
+static void write_D_of_shape(struct glsl *glsl)
+{
+	const struct ndf *ndf = &glsl->model->ndf;
+	write_shape(glsl);
+	if (isinf(ndf->gamma)) {
+		write_D_tan(glsl, "exp(-t * t) * w * w / MF_PI");
+		return;
+	}
+	if (ndf->gamma == 2.0 && !slides_gamma(ndf)) {
+		lines(glsl, "float mf_D(vec3 h)\n{\n"
+			    "\tfloat s = mf_sigma() * h.z * h.z + dot(h.xy, h.xy) / mf_sigma();\n"
+			    "\treturn 1.0 / (MF_PI * s * s);\n}\n\n");
+		return;
+	}
+	if (!slides_gamma(ndf)) {
+		constant(glsl, "MF_GAMMA", ndf->gamma);
+		lines(glsl, "\nfloat mf_gamma()\n{\n\treturn MF_GAMMA;\n}\n\n"
+			    "float mf_a()\n{\n\treturn MF_GAMMA - 1.0;\n}\n\n");
+	}
+	write_D_tan(glsl, "exp(-mf_gamma() * mf_log_1p(t * t / mf_a())) * w * w / MF_PI");
+}
+
+static enum status write_D(struct glsl *glsl, struct error *error)
+{
+	const struct ndf *ndf = &glsl->model->ndf;
 	if (ndf_is_tabulated(ndf->class))
 		return write_D_pl(glsl, error);
 	lines(glsl, log_1p);
-	if (is_named(ndf, "gtr")) {
-		constant(glsl, "MF_A", ndf->A);
-		constant(glsl, "MF_GAMMA", ndf->gamma);
-		constant(glsl, "MF_S",
-			 sigma > 1 ? (sigma - 1) * (sigma + 1) : (1 - sigma) * (1 + sigma) / sigma / sigma);
-		fprintf(glsl->file,
-			"\nfloat mf_D(vec3 h)\n{\n\treturn MF_A * exp(-MF_GAMMA * mf_log_1p(MF_S * %s));\n}\n\n",
-			sigma > 1 ? "h.z * h.z" : "dot(h.xy, h.xy)");
-	} else if (is_named(ndf, "low")) {
-		constant(glsl, "MF_A", ndf->A);
-		constant(glsl, "MF_B", ndf->param[0]);
-		constant(glsl, "MF_C", ndf->param[1]);
-		lines(glsl, "\nfloat mf_D(vec3 h)\n{\n"
-			    "\treturn MF_A * exp(-MF_C * mf_log_1p(MF_B * (dot(h.xy, h.xy) / (1.0 + h.z))));\n}\n\n");
-	} else if (isinf(ndf->gamma)) {
-		constant(glsl, "MF_SIGMA", sigma);
-		write_D_tan(glsl, "exp(-t * t) * w * w / MF_PI");
-	} else if (ndf->gamma == 2.0) {
-		constant(glsl, "MF_SIGMA", sigma / ndf->stretch);
-		lines(glsl, "\nfloat mf_D(vec3 h)\n{\n"
-			    "\tfloat s = MF_SIGMA * h.z * h.z + dot(h.xy, h.xy) / MF_SIGMA;\n"
-			    "\treturn 1.0 / (MF_PI * s * s);\n}\n\n");
-	} else {
-		constant(glsl, "MF_SIGMA", sigma / ndf->stretch);
-		constant(glsl, "MF_GAMMA", ndf->gamma);
-		write_D_tan(glsl, "exp(-MF_GAMMA * mf_log_1p(t * t / (MF_GAMMA - 1.0))) * w * w / MF_PI");
-	}
+	if (is_named(ndf, "gtr"))
+		write_D_gtr(glsl);
+	else if (is_named(ndf, "low"))
+		write_D_low(glsl);
+	else
+		write_D_of_shape(glsl);
 	return STATUS_OK;
 }
 
@@ -227,8 +386,8 @@ static enum status write_D(struct glsl *glsl, struct error *error)
 static void write_lambda_beckmann(struct glsl *glsl)
 {
 	lines(glsl, "float mf_lambda(float c, float s)\n{\n"
-		    "\tif (s * MF_SIGMA * 8.0 < c)\n\t\treturn 0.0;\n"
-		    "\tfloat z = c / (s * MF_SIGMA);\n"
+		    "\tif (s * mf_sigma() * 8.0 < c)\n\t\treturn 0.0;\n"
+		    "\tfloat z = c / (s * mf_sigma());\n"
 		    "\tfloat e = exp(-z * z) / 1.7724538509055160273;\n"
 		    "\tif (z < 0.8) {\n"
 		    "\t\tfloat term = z;\n\t\tfloat sum = z;\n"
@@ -246,35 +405,47 @@ static void write_lambda_beckmann(struct glsl *glsl)
 static void write_lambda_student_t(struct glsl *glsl)
 {
 	const struct ndf *ndf = &glsl->model->ndf;
-	constant(glsl, "MF_K", ndf->K); /* Gamma(gamma - 1/2) / (sqrt(pi) Gamma(gamma - 1)) */
-	constant(glsl, "MF_a", ndf->gamma - 1);
-	constant(glsl, "MF_ROOT_a", sqrt(ndf->gamma - 1));
-	constant(glsl, "MF_2G_3", 2 * ndf->gamma - 3);
-	lines(glsl, "\nfloat mf_lambda(float c, float s)\n{\n"
-		    "\tif (s * MF_SIGMA * 1e12 < c)\n\t\treturn 0.0;\n"
-		    "\tfloat z = c / (s * MF_SIGMA);\n"
-		    "\tfloat u = z / MF_ROOT_a;\n"
+	/* Gamma(x + 1/2) / Gamma(x), from 8.5 on by its asymptotic series. */
+	lines(glsl, "float mf_gamma_ratio(float x)\n{\n"
+		    "\tfloat front = 1.0;\n"
+		    "\tfloat y = x;\n"
+		    "\tfor (int i = 0; i < 8; i++) {\n"
+		    "\t\tfront *= y / (y + 0.5);\n\t\ty += 1.0;\n\t}\n"
+		    "\tfloat r = 1.0 / y;\n"
+		    "\treturn front * sqrt(y) * (1.0 - r * (1.0 / 8.0 - r * (1.0 / 128.0"
+		    " + r * (5.0 / 1024.0 - r * 21.0 / 32768.0))));\n}\n\n");
+	/* Gamma(gamma - 1/2) / (sqrt(pi) Gamma(gamma - 1)); of GGX not kept. */
+	derived(glsl, "mf_K", ndf->gamma == 2.0 ? 0.5 : ndf->K, "mf_gamma_moved",
+		"mf_gamma_ratio(gamma_shape - 1.0) / 1.7724538509055160273");
+	derived(glsl, "mf_2g_3", 2 * ndf->gamma - 3, "mf_gamma_moved", "2.0 * gamma_shape - 3.0");
+	lines(glsl, "float mf_lambda(float c, float s)\n{\n"
+		    "\tif (s * mf_sigma() * 1e12 < c)\n\t\treturn 0.0;\n"
+		    "\tfloat K = mf_K();\n"
+		    "\tfloat a = mf_a();\n"
+		    "\tfloat g3 = mf_2g_3();\n"
+		    "\tfloat z = c / (s * mf_sigma());\n"
+		    "\tfloat u = z / sqrt(a);\n"
 		    "\tfloat x = 1.0 / (1.0 + u * u);\n"
 		    "\tfloat y = u * u * x;\n"
-		    "\tfloat e = exp(-0.5 * MF_2G_3 * mf_log_1p(u * u));\n"
-		    "\tfloat front = MF_K * e / (MF_2G_3 * u);\n"
+		    "\tfloat e = exp(-0.5 * g3 * mf_log_1p(u * u));\n"
+		    "\tfloat front = K * e / (g3 * u);\n"
 		    "\tif (z < 0.8) {\n"
 		    "\t\tfloat term = 1.0;\n\t\tfloat sum = 1.0;\n"
 		    "\t\tfor (int i = 0; i < 64; i++) {\n"
-		    "\t\t\tterm *= y * (MF_a + 0.5 + float(i)) / (1.5 + float(i));\n\t\t\tsum += term;\n"
+		    "\t\t\tterm *= y * (a + 0.5 + float(i)) / (1.5 + float(i));\n\t\t\tsum += term;\n"
 		    "\t\t\tif (term < 1e-9 * sum)\n\t\t\t\tbreak;\n\t\t}\n"
-		    "\t\treturn max((front - 0.5) + MF_K * u * e * x * sum, 0.0);\n\t}\n"
+		    "\t\treturn max((front - 0.5) + K * u * e * x * sum, 0.0);\n\t}\n"
 		    "\tfloat tail = 0.0;\n"
 		    "\tfor (int i = " FRACTION_STEPS "; i > 0; i--) {\n"
 		    "\t\tfloat m = float(i);\n"
-		    "\t\tfloat A = MF_a + 2.0 * m;\n"
-		    "\t\tfloat b = (MF_a * (2.0 * m + 1.5) + 2.0 * m * m - 1.5) / ((A - 1.0) * (A + 1.0))\n"
-		    "\t\t\t+ y * (m * (m + 0.5) / ((A - 1.0) * A) + (MF_a + m) * (MF_a + m - 0.5) / (A * (A + 1.0)));\n"
-		    "\t\tfloat p = (MF_a + m - 1.0) / (A - 1.0) * ((MF_a + m - 1.5) / (A - 1.0))\n"
+		    "\t\tfloat A = a + 2.0 * m;\n"
+		    "\t\tfloat b = (a * (2.0 * m + 1.5) + 2.0 * m * m - 1.5) / ((A - 1.0) * (A + 1.0))\n"
+		    "\t\t\t+ y * (m * (m + 0.5) / ((A - 1.0) * A) + (a + m) * (a + m - 0.5) / (A * (A + 1.0)));\n"
+		    "\t\tfloat p = (a + m - 1.0) / (A - 1.0) * ((a + m - 1.5) / (A - 1.0))\n"
 		    "\t\t\t* (m / (A - 2.0)) * ((m + 0.5) / A) * (x * x);\n"
 		    "\t\ttail = p / (b - tail);\n\t}\n"
-		    "\tfloat fraction = 1.0 / ((1.5 + (MF_a - 0.5) * y) / (MF_a + 1.0) - tail);\n"
-		    "\treturn front / (2.0 * MF_a) * fraction;\n}\n\n");
+		    "\tfloat fraction = 1.0 / ((1.5 + (a - 0.5) * y) / (a + 1.0) - tail);\n"
+		    "\treturn front / (2.0 * a) * fraction;\n}\n\n");
 }
 
 /* A cubic in z, as GLSL. */
@@ -296,7 +467,7 @@ static void write_lambda_rational(struct glsl *glsl, const struct ndf *ndf)
 	if (!isinf(ndf->gamma))
 		constant(glsl, "MF_a", ndf->gamma - 1);
 	lines(glsl, "\nfloat mf_lambda(float c, float s)\n{\n"
-		    "\tfloat z = min(c / max(s * MF_SIGMA, 1e-12), 1e9);\n");
+		    "\tfloat z = min(c / max(s * mf_sigma(), 1e-12), 1e9);\n");
 	write_cubic(glsl, "p21", lambda_form_p21);
 	write_cubic(glsl, "q21", lambda_form_q21);
 	write_cubic(glsl, "p24", lambda_form_p24);
@@ -335,7 +506,7 @@ static void write_lambda(struct glsl *glsl, const struct lambda_table *table)
 	switch (lambda_kind(ndf)) {
 	case LAMBDA_OF_GGX:
 		lines(glsl, "float mf_lambda(float c, float s)\n{\n"
-			    "\tfloat r = MF_SIGMA * s;\n"
+			    "\tfloat r = mf_sigma() * s;\n"
 			    "\treturn 0.5 * r * (r / (c + sqrt(c * c + r * r))) / c;\n}\n\n");
 		break;
 	case LAMBDA_OF_BECKMANN:
@@ -355,50 +526,74 @@ static void write_lambda(struct glsl *glsl, const struct lambda_table *table)
 
 /* G, and the whole */
 
-static const char *const G[GAF_COUNT] = {
-	[GAF_UNCORRELATED] = "1.0 / ((1.0 + mf_lambda(wi.z, length(wi.xy))) * (1.0 + mf_lambda(wo.z, length(wo.xy))))",
-	[GAF_CORRELATED] = "1.0 / (1.0 + mf_lambda(wi.z, length(wi.xy)) + mf_lambda(wo.z, length(wo.xy)))",
-	[GAF_V_GROOVE] = "min(1.0, 4.0 * h.z * (min(wi.z, wo.z) / size))",
-};
-
-static void write_lobe(struct glsl *glsl)
+/* With axes D is that of a normal, Lambda that of a direction, whose x and y are scaled. */
+static void write_lobe(struct glsl *glsl, bool axes)
 {
+	lines(glsl, "float mf_lobe(vec3 wi, vec3 wo)\n{\n"
+		    "\tfloat size = length(wi + wo);\n"
+		    "\tvec3 h = (wi + wo) / size;\n"
+		    "\tfloat G = ");
+	if (glsl->model->gaf == GAF_V_GROOVE)
+		lines(glsl, "min(1.0, 4.0 * h.z * (min(wi.z, wo.z) / size))");
+	else
+		fprintf(glsl->file,
+			glsl->model->gaf == GAF_CORRELATED
+				? "1.0 / (1.0 + mf_lambda(wi.z, length(%s)) + mf_lambda(wo.z, length(%s)))"
+				: "1.0 / ((1.0 + mf_lambda(wi.z, length(%s))) * (1.0 + mf_lambda(wo.z, length(%s))))",
+			axes ? "(mf_turn(wi) * mf_stretch()).xy" : "wi.xy",
+			axes ? "(mf_turn(wo) * mf_stretch()).xy" : "wo.xy");
+	fprintf(glsl->file, ";\n\treturn mf_F(min(0.5 * size, 1.0)) * mf_D(%s) * G / (4.0 * wi.z) / wo.z;\n}\n\n",
+		axes ? "mf_turn(h) / mf_stretch()" : "h");
+}
+
+/* Directions as the axes of the roughness see them, and how much longer each axis is than their mean. The half vector is
+ * turned, not the directions that it is the sum of: that would cost it digits. */
+static void write_axes(struct glsl *glsl)
+{
+	const struct ndf *ndf = &glsl->model->ndf;
+	const double mean = roughness(ndf);
+	const double c = ndf->angle == 0 ? 1 : ndf->turn_cos, s = ndf->angle == 0 ? 0 : ndf->turn_sin;
+	char text[2][CSV_NUMBER_SIZE];
 	fprintf(glsl->file,
-		"float mf_lobe(vec3 wi, vec3 wo)\n{\n"
-		"\tfloat size = length(wi + wo);\n"
-		"\tvec3 h = (wi + wo) / size;\n"
-		"\tfloat G = %s;\n"
-		"\treturn mf_F(min(0.5 * size, 1.0)) * mf_D(h) * G / (4.0 * wi.z) / wo.z;\n}\n\n",
-		G[glsl->model->gaf]);
+		"vec3 mf_stretch()\n{\n\treturn mf_sigma_moved() ? vec3(sqrt(sigma_x / sigma_y), sqrt(sigma_y / "
+		"sigma_x), 1.0) : vec3(%s, %s, 1.0);\n}\n\n",
+		literal(glsl, text[0], ndf->sigma_x / mean), literal(glsl, text[1], ndf->sigma_y / mean));
+	constant(glsl, "MF_COS", fabs(c) < 1e-30 ? 0 : c);
+	constant(glsl, "MF_SIN", fabs(s) < 1e-30 ? 0 : s);
+	lines(glsl, "\nvec3 mf_turn(vec3 w)\n{\n"
+		    "\treturn vec3(MF_COS * w.x + MF_SIN * w.y, MF_COS * w.y - MF_SIN * w.x, w.z);\n}\n\n");
 }
 
 static void write_model(struct glsl *glsl, bool specular)
 {
-	constant_rgb(glsl, "MF_KD", glsl->model->kd);
+	derived_rgb(glsl, "kd", glsl->model->kd);
 	if (specular)
-		constant_rgb(glsl, "MF_KS", glsl->model->ks);
-	lines(glsl, "\nvec3 BRDF(vec3 L, vec3 V, vec3 N, vec3 X, vec3 Y)\n{\n"
+		derived_rgb(glsl, "ks", glsl->model->ks);
+	lines(glsl, "vec3 BRDF(vec3 L, vec3 V, vec3 N, vec3 X, vec3 Y)\n{\n"
 		    "\tvec3 wi = vec3(dot(L, X), dot(L, Y), dot(L, N));\n"
 		    "\tvec3 wo = vec3(dot(V, X), dot(V, Y), dot(V, N));\n"
 		    "\tif (wi.z <= 0.0 || wo.z <= 0.0)\n\t\treturn vec3(0.0);\n"
 		    "\tvec3 f = vec3(0.0);\n"
-		    "\tif (diffuse)\n\t\tf += MF_KD / MF_PI;\n");
+		    "\tif (diffuse)\n\t\tf += mf_kd() / MF_PI;\n");
 	if (specular)
-		lines(glsl, "\tif (specular)\n\t\tf += MF_KS * mf_lobe(wi, wo);\n");
+		lines(glsl, "\tif (specular)\n\t\tf += mf_ks() * mf_lobe(wi, wo);\n");
 	lines(glsl, "\treturn f;\n}\n");
 }
 
-static void write_header(const struct export *export, FILE *file, const struct lambda_table *table)
+static void write_header(struct glsl *glsl, const struct export *export, const struct lambda_table *table)
 {
-	lines(&(struct glsl){.file = file}, "analytic\n");
+	FILE *file = glsl->file;
+	lines(glsl, "analytic\n");
 	export_comment(export, file, "# ", "");
 	if (table->n)
 		fprintf(file,
 			"# Smith's Lambda is interpolated in a table of %d values; between them the error of G1 is at "
 			"most %.1e\n",
 			table->n, table->G1_error);
-	fprintf(file, "\n::begin parameters\nbool diffuse 1\nbool specular 1\n::end parameters\n\n::begin shader\n\n");
-	fprintf(file, "const float MF_PI = 3.1415926535897932385;\n");
+	lines(glsl, "\n::begin parameters\nbool diffuse 1\nbool specular 1\n");
+	write_sliders(glsl);
+	lines(glsl, "::end parameters\n\n::begin shader\n\nconst float MF_PI = 3.1415926535897932385;\n\n");
+	lines(glsl, moved);
 }
 
 static enum status write_shader(struct glsl *glsl, const struct export *export, const struct lambda_table *table,
@@ -406,13 +601,15 @@ static enum status write_shader(struct glsl *glsl, const struct export *export, 
 {
 	const bool specular = export_max(glsl->model->ks) > 0;
 	enum status status = STATUS_OK;
-	write_header(export, glsl->file, table);
+	write_header(glsl, export, table);
 	if (specular) {
 		write_fresnel(glsl);
 		status = write_D(glsl, error);
 		if (glsl->model->gaf != GAF_V_GROOVE)
 			write_lambda(glsl, table);
-		write_lobe(glsl);
+		if (export_has_axes(glsl->model))
+			write_axes(glsl);
+		write_lobe(glsl, export_has_axes(glsl->model));
 	}
 	write_model(glsl, specular);
 	lines(glsl, "\n::end shader\n");

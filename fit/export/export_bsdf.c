@@ -8,12 +8,13 @@
 
 /* Half of the warp's density is D, half 1/pi: one for the lobe, one for the rest. Below cos 0.2, D stays what it is there:
  * where gamma < 2 it rises towards the horizon, and would draw all nodes there. */
-static double warp_density(const void *context, double theta_m)
+static double warp_density(const void *context, struct vec3 m)
 {
 	const struct cook_torrance *model = context;
-	const double cosine = fmax(cos(theta_m), 0.2);
-	const struct vec3 m = {sqrt(1 - cosine * cosine), 0, cosine};
-	const double D = export_max(model->ks) > 0 ? ndf_D(&model->ndf, m) : 0;
+	const double cosine = fmax(m.z, 0.2), sine = hypot(m.x, m.y);
+	const double scale = sine > 0 ? sqrt(1 - cosine * cosine) / sine : 0;
+	const struct vec3 raised = {scale * m.x, scale * m.y, cosine};
+	const double D = export_max(model->ks) > 0 ? ndf_D(&model->ndf, raised) : 0;
 
 	return 0.5 * (D + 1 / M_PI);
 }
@@ -52,9 +53,25 @@ static bool directions(int h, int d, int p, struct vec3 *wi, struct vec3 *wo, do
 
 enum { DIRECTIONS = HALF * DIFFERENCE * AZIMUTHS };
 
-static bool directions_of(int n, struct vec3 *wi, struct vec3 *wo, double *measure)
+static struct vec3 turned(struct vec3 w, double c, double s)
 {
-	return directions(n / (DIFFERENCE * AZIMUTHS), n / AZIMUTHS % DIFFERENCE, n % AZIMUTHS, wi, wo, measure);
+	return (struct vec3){c * w.x - s * w.y, s * w.x + c * w.y, w.z};
+}
+
+/* Of an anisotropic model the pairs are turned about the normal, by multiples of the golden ratio. */
+static bool directions_of(const struct cook_torrance *model, int n, struct vec3 *wi, struct vec3 *wo, double *measure)
+{
+	static const double golden = 0.6180339887498949;
+	const bool above =
+		directions(n / (DIFFERENCE * AZIMUTHS), n / AZIMUTHS % DIFFERENCE, n % AZIMUTHS, wi, wo, measure);
+
+	if (export_has_axes(model)) {
+		const double turn = 2 * M_PI * golden * n, c = cos(turn), s = sin(turn);
+
+		*wi = turned(*wi, c, s);
+		*wo = turned(*wo, c, s);
+	}
+	return above;
 }
 
 /* The model's values there, newly allocated: each refinement is held to them. NULL when out of memory. */
@@ -67,7 +84,7 @@ static double (*values_of(const struct cook_torrance *model, int threads))[MERL_
 		struct vec3 wi, wo;
 		double measure;
 
-		if (value && directions_of(n, &wi, &wo, &measure))
+		if (value && directions_of(model, n, &wi, &wo, &measure))
 			cook_torrance_f(model, wi, wo, value[n]);
 	}
 	return value;
@@ -75,7 +92,8 @@ static double (*values_of(const struct cook_torrance *model, int threads))[MERL_
 
 /* The L1 distance, weighted by cos_i cos_o, divided by the norm of the model. Sums go over HALF parts in their order, so
  * that the number of threads changes nothing. */
-static double l1_error(const struct rgl *rgl, double (*value)[MERL_CHANNELS], int threads)
+static double l1_error(const struct rgl *rgl, const struct cook_torrance *model, double (*value)[MERL_CHANNELS],
+		       int threads)
 {
 	const int part = DIRECTIONS / HALF;
 	double difference[HALF] = {0}, norm[HALF] = {0};
@@ -86,7 +104,7 @@ static double l1_error(const struct rgl *rgl, double (*value)[MERL_CHANNELS], in
 			struct vec3 wi, wo;
 			double measure, got[MERL_CHANNELS];
 
-			if (!directions_of(n, &wi, &wo, &measure) || !rgl_f(rgl, wi, wo, got))
+			if (!directions_of(model, n, &wi, &wo, &measure) || !rgl_f(rgl, wi, wo, got))
 				continue;
 			for (int c = 0; c < MERL_CHANNELS; c++) {
 				difference[h] += fabs(got[c] - value[n][c]) * wi.z * wo.z * measure;
@@ -114,16 +132,23 @@ static enum status try_layout(const struct rgl_layout *layout, double (*value)[M
 	free(bytes);
 	if (status != STATUS_OK)
 		return status;
-	*error = l1_error(rgl, value, layout->threads);
+	*error = l1_error(rgl, layout->context, value, layout->threads);
 	rgl_free(rgl);
 	return STATUS_OK;
 }
 
+/* theta_i are half as many as half vectors along each side, since more of them would gain less. With axes, azimuths of wi over
+ * half of the circle cost as much as theta_i, and both gain less. pbrt-v4 wants the whole circle. */
 static struct rgl_layout layout_of(const struct export *export, size_t side, const char *description)
 {
+	const bool axes = export_has_axes(&export->model), half = export->format == EXPORT_BSDF_RGB;
+	const size_t n_phi = half ? side / 2 + 1 : side + 1;
+
 	return (struct rgl_layout){.description = description,
 				   .spectra = export->format == EXPORT_BSDF,
-				   .n_theta = side / 2,
+				   .n_phi = axes ? n_phi : 1,
+				   .half = half,
+				   .n_theta = axes ? side * 2 / 5 : side / 2,
 				   .n_nodes = side,
 				   .threads = export->source.fit->threads,
 				   .density = warp_density,
@@ -131,7 +156,7 @@ static struct rgl_layout layout_of(const struct export *export, size_t side, con
 				   .context = &export->model};
 }
 
-/* Half vectors along each side; theta_i are half as many, since more of them would gain less. */
+/* Half vectors along each side. */
 static const size_t nodes[] = {16, 24, 32, 40, 48, 64, 80, 96, 112, 128, 160, 192, 256};
 
 /* Sets nodes of the export; *found is the error of what has as many. */
@@ -164,10 +189,14 @@ static enum status bsdf_prepare(struct export *export, struct error *error)
 	const enum status status = refine(export, value, &found, error);
 
 	free(value);
+	const struct rgl_layout layout = layout_of(export, export->nodes, "-");
+	char azimuths[64] = "";
+	if (layout.n_phi > 1)
+		snprintf(azimuths, sizeof azimuths, "%zu phi_i, ", layout.n_phi);
 	snprintf(export->why, sizeof export->why,
-		 "a table of the model at %zu theta_i and %zu x %zu half vectors; error against the model %.2g %% (L1, "
-		 "weight cosine)%s",
-		 export->nodes / 2, export->nodes, export->nodes, 100 * found,
+		 "a table of the model at %s%zu theta_i and %zu x %zu half vectors; error against the model %.2g %% "
+		 "(L1, weight cosine)%s",
+		 azimuths, layout.n_theta, export->nodes, export->nodes, 100 * found,
 		 100 * found > export->source.accuracy ? ", the least of this size" : "");
 	return status;
 }

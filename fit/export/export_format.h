@@ -14,16 +14,21 @@ struct export_target {
 	enum status (*write)(const struct export *export, FILE *file, struct error *error);
 	/* Whether the model would be replaced; NULL: never. */
 	bool (*replaces)(const struct cook_torrance *model);
+	/* What the target makes of export->model in two directions above the horizon; NULL: cook_torrance_f(). */
+	void (*shows)(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo, double f[3]);
 };
 
 extern const struct export_target export_brdf, export_merl, export_mitsuba, export_pbrt, export_gltf, export_json,
-	export_bsdf, export_bsdf_rgb;
+	export_bsdf, export_bsdf_rgb, export_materialx;
 
 /* export_max - the largest of three channels. */
 static inline double export_max(const double x[3])
 {
 	return fmax(x[0], fmax(x[1], x[2]));
 }
+
+/* export_has_axes - whether the model has a lobe and that is anisotropic. */
+bool export_has_axes(const struct cook_torrance *model);
 
 /* export_as_it_is - a prepare() for targets that take every model: why = "exact: " and the text. */
 enum status export_as_it_is(struct export *export, const char *text);
@@ -34,6 +39,10 @@ void export_describe(const struct export *export, char text[EXPORT_TEXT]);
 /* export_comment - the lines that begin every text: why, cost, description; each between the two strings, in which
  * `--`, `"` and backslashes, for the sake of the formats' own comments, are replaced. */
 void export_comment(const struct export *export, FILE *file, const char *before, const char *after);
+
+/* export_comment_axes - of an anisotropic model one line more: along what the target has its first roughness. */
+void export_comment_axes(const struct export *export, FILE *file, const char *before, const char *along,
+			 const char *after);
 
 /* export_identifier - the material's name of letters, digits and _ only; "material" if there is none. */
 enum { EXPORT_NAME = 64 };

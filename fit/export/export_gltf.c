@@ -2,12 +2,13 @@
 /* glTF 2.0 with KHR_materials_ior and KHR_materials_specular. Its dielectric is no sum but a layer,
  *     f_c = (1 - max F) baseColor_c / pi + F_c D G / (4 cos_i cos_o),
  *     F_c = s (F0_c + (1 - F0_c) (1 - cos_d)^5),  F0_c = min(1, ((n-1)/(n+1))^2 specularColor_c),
- * D of GGX with sigma = roughness^2, G height-correlated: so every export is approximate, and its error is measured with
- * that formula. s = max ks, specularColor = ks/s. */
-#include "fit/error/entries.h"
-#include "fit/error/error_sum.h"
-#include "fit/error/sample_set.h"
+ * D of GGX with sigma = roughness^2, G height-correlated. So every export with a lobe is approximate, and is fitted in these terms
+ * [gltf_fit.h]. specularFactor s is 1 (0 without a lobe), since not every importer reads it; ks is specularColor.
+ *
+ * KHR_materials_anisotropy: along the tangent, turned counter-clockwise by anisotropyRotation, the roughness is
+ * mix(sigma, 1, anisotropyStrength^2), the larger one; across it is sigma. */
 #include "fit/export/export_format.h"
+#include "fit/export/gltf_fit.h"
 #include "fit/export/substitute.h"
 #include "fit/results/csv_number.h"
 
@@ -21,86 +22,102 @@ static const struct target target = {
 	.sigma_max = 1,
 };
 
+/* The model as a material, and back: F0_c = F0(n) ks_c. */
+static double reflectance(double n)
+{
+	return (n - 1) / (n + 1) * ((n - 1) / (n + 1));
+}
+
+static struct gltf_material material_of(const struct cook_torrance *model)
+{
+	struct gltf_material material = {.ndf = model->ndf, .specular = export_max(model->ks) > 0};
+	for (int c = 0; c < 3; c++) {
+		material.base[c] = model->kd[c];
+		material.F0[c] = fmin(reflectance(model->n) * model->ks[c], 1);
+	}
+	return material;
+}
+
+static void set_material(struct cook_torrance *model, const struct gltf_material *material)
+{
+	const double F0 = export_max(material->F0), root = sqrt(fmin(F0, 0.99));
+	model->ndf = material->ndf;
+	model->n = (1 + root) / (1 - root);
+	for (int c = 0; c < 3; c++) {
+		model->kd[c] = material->base[c];
+		model->ks[c] = F0 > 0 ? material->F0[c] / (root * root) : 1;
+	}
+}
+
 /* What a viewer makes of the model. */
 static void gltf_f(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo, double f[3])
 {
-	struct cook_torrance lobe = *model;
-	const double s = export_max(model->ks), root = (model->n - 1) / (model->n + 1);
-	const double x = 1 - fmin(0.5 * vec3_length(vec3_add(wi, wo)), 1);
-	double F[3], largest = 0;
-	lobe.fresnel = FRESNEL_NONE;
-	const double DG = s > 0 ? cook_torrance_lobe(&lobe, wi, wo) : 0;
-	for (int c = 0; c < 3; c++) {
-		const double F0 = s > 0 ? fmin(root * root * model->ks[c] / s, 1) : 0;
-		F[c] = s * (F0 + (1 - F0) * (x * x) * (x * x) * x);
-		largest = fmax(largest, F[c]);
-	}
-	for (int c = 0; c < 3; c++)
-		f[c] = (1 - largest) * model->kd[c] * M_1_PI + F[c] * DG;
+	const struct gltf_material material = material_of(model);
+	gltf_material_f(&material, wi, wo, f);
 }
 
-/* Sums of row i of the table: w |m - f| and w m. */
-static void add_row(const struct export *export, const struct measurement *measurement, const struct entries *entries,
-		    int i, double sum[2])
+static bool is_gray(const double x[3])
+{
+	return x[0] == x[1] && x[1] == x[2];
+}
+
+/* The errors of the model and of what a viewer shows, under the weight of the fit first. */
+static enum status report_cost(struct export *export, const struct measurement *measurement,
+			       const struct gltf_material *material, struct error *error)
 {
 	const struct fit_options *fit = export->source.fit;
-	const double min_cos = max_theta_cos(fit->criterion.max_theta);
-	for (int j = 0; j < MERL_THETA_D; j++)
-		for (int k = 0; k < measurement->n_phi_d; k++) {
-			const size_t at = measurement_at(measurement->n_phi_d, i, j, k);
-			struct vec3 wi, wo;
-			double f[3];
-			entries_dirs(entries, i, j, k, &wi, &wo);
-			if (entry_is_missing(measurement, &fit->criterion, at) || !entry_in_range(wi, wo, min_cos))
-				continue;
-			gltf_f(&export->model, wi, wo, f);
-			const double w = weight_at(fit->criterion.weight, i, j, wi.z, wo.z);
-			for (int c = 0; c < MERL_CHANNELS; c++) {
-				sum[0] += error_term(w, (double)measurement->value[c][at], f[c]);
-				sum[1] += w * (double)measurement->value[c][at];
-			}
-		}
+	struct fit_metrics before;
+	double after[WEIGHT_COUNT];
+	const enum status status = fit_eval(measurement, export->source.model, fit, &before, error);
+	if (status != STATUS_OK)
+		return status;
+	for (enum weight weight = 0; weight < WEIGHT_COUNT; weight++) {
+		struct criterion criterion = fit->criterion;
+		criterion.weight = weight;
+		after[weight] = gltf_material_error(measurement, &criterion, fit->threads, material);
+	}
+	substitute_cost(export, before.error, after);
+	return STATUS_OK;
 }
 
-/* E of what a viewer makes of the model. */
-static double gltf_error(const struct export *export, const struct measurement *measurement)
+/* Fits the material in its own terms, from the model on. */
+static enum status fit_material(struct export *export, const struct measurement *measurement, struct error *error)
 {
-	const struct entries entries = entries_make(export->source.fit->criterion.bins, measurement->n_phi_d);
-	double sum[MERL_THETA_H][2] = {{0}}, difference = 0, all = 0;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(export->source.fit->threads)
-	for (int i = 0; i < MERL_THETA_H; i++)
-		add_row(export, measurement, &entries, i, sum[i]);
-	for (int i = 0; i < MERL_THETA_H; i++) {
-		difference += sum[i][0];
-		all += sum[i][1];
-	}
-	return error_ratio(difference, all);
+	const struct fit_options *fit = export->source.fit;
+	const struct cook_torrance *model = export->source.model;
+	struct criterion criterion = fit->criterion;
+	struct gltf_material material = material_of(&export->model);
+	criterion.weight = export->source.weight;
+	if (material.specular && gltf_fit(measurement, &criterion, fit->threads,
+					  is_gray(model->kd) && is_gray(model->ks), &material) != STATUS_OK)
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	if (material.specular)
+		set_material(&export->model, &material);
+	export->substitute = true;
+	return report_cost(export, measurement, &material, error);
 }
 
 static enum status gltf_prepare(struct export *export, struct error *error)
 {
 	struct measurement own;
-	const enum status status = substitute_prepare(export, &target, error);
+	enum status status = substitute_prepare(export, &target, error);
 	if (status != STATUS_OK)
 		return status;
-	if (export_max(export->model.kd) > 1 || export_max(export->model.ks) > 1)
-		return error_set(error, STATUS_UNSUPPORTED,
-				 "glTF has no factor above 1: kd is up to %.5g, ks up to %.5g",
-				 export_max(export->model.kd), export_max(export->model.ks));
+	if (export_max(export->model.kd) > 1)
+		return error_set(error, STATUS_UNSUPPORTED, "glTF has no factor above 1: kd is up to %.5g",
+				 export_max(export->model.kd));
+	if (!(export_max(export->source.model->ks) > 0))
+		return export_as_it_is(export, "the model itself");
 	if (!export->substitute)
-		snprintf(export->why, sizeof export->why, "approximate: the model's own parameters, but");
+		snprintf(export->why, sizeof export->why, "approximate: glTF has no sum of two lobes");
 	const size_t used = strlen(export->why);
 	snprintf(export->why + used, sizeof export->why - used,
-		 "%s glTF takes what the surface reflects from the diffuse part", export->substitute ? ", and" : "");
+		 "; its lobe takes what it reflects from the diffuse part, and was fitted like that");
 	const struct measurement *measurement = substitute_measurement(&export->source, &own);
-	if (!measurement)
-		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	const size_t written = strlen(export->cost);
-	snprintf(export->cost + written, sizeof export->cost - written, "%serror of what a glTF viewer shows %.5g%s",
-		 written ? "; " : "", gltf_error(export, measurement),
-		 written || export->source.measurement ? "" : " (against a table of the model itself)");
+	status = measurement ? fit_material(export, measurement, error)
+			     : error_set(error, STATUS_NO_MEMORY, "out of memory");
 	measurement_free(&own);
-	return STATUS_OK;
+	return status;
 }
 
 /* Array elements, without brackets. */
@@ -119,7 +136,8 @@ enum {
 	VERTICES = (MERIDIANS + 1) * (PARALLELS + 1),
 	INDICES = MERIDIANS * (PARALLELS - 1) * 6,
 	INDEX_BYTES = INDICES * 2,
-	VERTEX_BYTES = VERTICES * 3 * 4
+	VERTEX_BYTES = VERTICES * 3 * 4,
+	TANGENT_BYTES = VERTICES * 4 * 4
 };
 
 /* Base64, of bytes that come one at a time. */
@@ -155,10 +173,25 @@ static void put_float(struct base64 *to, double value)
 		put_byte(to, bits >> shift & 255);
 }
 
+/* To the right along the parallels; the bitangent points to the upper pole. Padded with zeros to base64's 3 bytes. */
+static void put_tangents(struct base64 *to)
+{
+	for (int n = 0; n < VERTICES; n++) {
+		const double phi = 2 * M_PI * (n % (MERIDIANS + 1)) / MERIDIANS;
+
+		put_float(to, cos(phi));
+		put_float(to, 0);
+		put_float(to, -sin(phi));
+		put_float(to, 1);
+	}
+	while (to->n % 3)
+		put_byte(to, 0);
+}
+
 /* Indices and positions, which are the normals too; both are multiples of 3 bytes long. Poles are along y; at them one of
  * the two triangles has no area and is left out. */
 _Static_assert(INDEX_BYTES % 12 == 0 && VERTEX_BYTES % 3 == 0, "base64 without padding, aligned floats");
-static void write_sphere(FILE *file)
+static void write_sphere(FILE *file, bool tangents)
 {
 	struct base64 to = {file, 0, 0};
 
@@ -179,10 +212,14 @@ static void write_sphere(FILE *file)
 		put_float(&to, cos(theta));
 		put_float(&to, sin(theta) * cos(phi));
 	}
+	if (tangents)
+		put_tangents(&to);
 }
 
-static void write_scene(FILE *file)
+static void write_scene(FILE *file, bool tangents)
 {
+	const int bytes = INDEX_BYTES + VERTEX_BYTES + (tangents ? (TANGENT_BYTES + 2) / 3 * 3 : 0);
+
 	fprintf(file,
 		"  \"scene\": 0,\n  \"scenes\": [{\"nodes\": [0, 1, 2]}],\n  \"nodes\": [\n"
 		"    {\"name\": \"sphere\", \"mesh\": 0},\n"
@@ -194,35 +231,53 @@ static void write_scene(FILE *file)
 		"\"znear\": 0.1, \"zfar\": 100}}],\n"
 		"  \"extensions\": {\"KHR_lights_punctual\": {\"lights\": [{\"type\": \"directional\", "
 		"\"intensity\": 3}]}},\n"
-		"  \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 1, \"NORMAL\": 1}, \"indices\": 0, "
-		"\"material\": 0}]}],\n");
+		"  \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 1, \"NORMAL\": 1%s}, \"indices\": 0, "
+		"\"material\": 0}]}],\n",
+		tangents ? ", \"TANGENT\": 2" : "");
 	fprintf(file,
 		"  \"accessors\": [\n"
 		"    {\"bufferView\": 0, \"componentType\": 5123, \"count\": %d, \"type\": \"SCALAR\"},\n"
 		"    {\"bufferView\": 1, \"componentType\": 5126, \"count\": %d, \"type\": \"VEC3\", \"min\": [-1, -1, "
 		"-1], "
-		"\"max\": [1, 1, 1]}\n  ],\n"
-		"  \"bufferViews\": [\n"
+		"\"max\": [1, 1, 1]}",
+		INDICES, VERTICES);
+	if (tangents)
+		fprintf(file, ",\n    {\"bufferView\": 2, \"componentType\": 5126, \"count\": %d, \"type\": \"VEC4\"}",
+			VERTICES);
+	fprintf(file,
+		"\n  ],\n  \"bufferViews\": [\n"
 		"    {\"buffer\": 0, \"byteLength\": %d, \"target\": 34963},\n"
-		"    {\"buffer\": 0, \"byteOffset\": %d, \"byteLength\": %d, \"target\": 34962}\n  ],\n"
-		"  \"buffers\": [{\"byteLength\": %d, \"uri\": \"data:application/octet-stream;base64,",
-		INDICES, VERTICES, INDEX_BYTES, INDEX_BYTES, VERTEX_BYTES, INDEX_BYTES + VERTEX_BYTES);
-	write_sphere(file);
+		"    {\"buffer\": 0, \"byteOffset\": %d, \"byteLength\": %d, \"target\": 34962}",
+		INDEX_BYTES, INDEX_BYTES, VERTEX_BYTES);
+	if (tangents)
+		fprintf(file, ",\n    {\"buffer\": 0, \"byteOffset\": %d, \"byteLength\": %d, \"target\": 34962}",
+			INDEX_BYTES + VERTEX_BYTES, TANGENT_BYTES);
+	fprintf(file, "\n  ],\n  \"buffers\": [{\"byteLength\": %d, \"uri\": \"data:application/octet-stream;base64,",
+		bytes);
+	write_sphere(file, tangents);
 	fprintf(file, "\"}]\n}\n");
 }
 
 /* Importers take no ior of a metal's F0. What is above this goes into the colour, which may exceed 1: the same F0. */
 static const double ior_max = 2.5;
 
-static double reflectance(double n)
+static void write_anisotropy(FILE *file, const struct ndf *ndf)
 {
-	return (n - 1) / (n + 1) * ((n - 1) / (n + 1));
+	const double low = fmin(ndf->sigma_x, ndf->sigma_y), high = fmax(ndf->sigma_x, ndf->sigma_y);
+	const double angle = (ndf->angle + (ndf->sigma_x < ndf->sigma_y ? 90 : 0)) * M_PI / 180;
+	char strength[CSV_NUMBER_SIZE], rotation[CSV_NUMBER_SIZE];
+
+	fprintf(file,
+		"        \"KHR_materials_anisotropy\": {\"anisotropyStrength\": %s, \"anisotropyRotation\": %s},\n",
+		csv_number(strength, sqrt((high - low) / (1 - low))), csv_number(rotation, angle));
 }
 
 static enum status gltf_write(const struct export *export, FILE *file, struct error *error)
 {
 	const struct cook_torrance *model = &export->model;
-	const double s = export_max(model->ks), ior = fmin(model->n, ior_max);
+	const double ior = fmin(model->n, ior_max);
+	const bool lobe = export_max(model->ks) > 0;
+	const bool axes = export_has_axes(model);
 	char name[EXPORT_NAME], text[CSV_NUMBER_SIZE];
 	(void)error;
 	export_identifier(export, name);
@@ -233,23 +288,26 @@ static enum status gltf_write(const struct export *export, FILE *file, struct er
 	export_comment(export, file, "        \"", "\",");
 	fprintf(file,
 		"        \"\"\n      ]\n    }\n  },\n"
-		"  \"extensionsUsed\": [\"KHR_lights_punctual\", \"KHR_materials_ior\", \"KHR_materials_specular\"],\n"
+		"  \"extensionsUsed\": [\"KHR_lights_punctual\", \"KHR_materials_ior\", "
+		"\"KHR_materials_specular\"%s],\n"
 		"  \"materials\": [\n    {\n      \"name\": \"%s\",\n      \"pbrMetallicRoughness\": {\n"
 		"        \"baseColorFactor\": [",
-		name);
+		axes ? ", \"KHR_materials_anisotropy\"" : "", name);
 	write_rgb(file, model->kd, 1);
 	fprintf(file, ", 1],\n        \"metallicFactor\": 0,\n        \"roughnessFactor\": %s\n      },\n",
-		csv_number(text, s > 0 ? sqrt(model->ndf.sigma_x) : 1));
-	fprintf(file, "      \"extensions\": {\n        \"KHR_materials_ior\": {\"ior\": %s},\n",
-		csv_number(text, s > 0 ? ior : 1.5));
+		csv_number(text, lobe ? sqrt(fmin(model->ndf.sigma_x, model->ndf.sigma_y)) : 1));
+	fprintf(file, "      \"extensions\": {\n");
+	if (axes)
+		write_anisotropy(file, &model->ndf);
+	fprintf(file, "        \"KHR_materials_ior\": {\"ior\": %s},\n", csv_number(text, lobe ? ior : 1.5));
 	fprintf(file,
-		"        \"KHR_materials_specular\": {\n          \"specularFactor\": %s,\n          "
+		"        \"KHR_materials_specular\": {\n          \"specularFactor\": %d,\n          "
 		"\"specularColorFactor\": [",
-		csv_number(text, s));
+		lobe);
 	const double scale = model->n > ior_max ? reflectance(model->n) / reflectance(ior_max) : 1;
-	write_rgb(file, model->ks, s > 0 ? scale / s : 0);
+	write_rgb(file, model->ks, scale);
 	fprintf(file, "]\n        }\n      }\n    }\n  ],\n");
-	write_scene(file);
+	write_scene(file, axes);
 	return STATUS_OK;
 }
 
@@ -260,4 +318,4 @@ static bool replaces(const struct cook_torrance *model)
 }
 
 const struct export_target export_gltf = {
-	.name = "gltf", .prepare = gltf_prepare, .write = gltf_write, .replaces = replaces};
+	.name = "gltf", .prepare = gltf_prepare, .write = gltf_write, .replaces = replaces, .shows = gltf_f};

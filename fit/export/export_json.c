@@ -62,6 +62,12 @@ static void write_nodes(FILE *file, const struct pwl *pwl)
 	fputs("]\n  },\n", file);
 }
 
+static void write_parameter(FILE *file, const char *before, const char *name, double value)
+{
+	fprintf(file, "%s\"%s\": ", before, name);
+	write_number(file, value);
+}
+
 static void write_ndf(FILE *file, const struct ndf *ndf)
 {
 	fprintf(file, "  \"ndf\": \"%s\",\n", ndf_name(ndf->class));
@@ -69,9 +75,11 @@ static void write_ndf(FILE *file, const struct ndf *ndf)
 		write_nodes(file, ndf->pwl);
 	} else {
 		fputs("  \"parameters\": {", file);
-		for (int i = 0; ndf_param_at(ndf->class, i); i++) {
-			fprintf(file, "%s\"%s\": ", i ? ", " : "", ndf_param_at(ndf->class, i)->name);
-			write_number(file, ndf->param[i]);
+		for (int i = 0; ndf_param_at(ndf->class, i); i++)
+			write_parameter(file, i ? ", " : "", ndf_param_at(ndf->class, i)->name, ndf->param[i]);
+		if (ndf->sigma_x != ndf->sigma_y) {
+			write_parameter(file, ", ", "sigma_y", ndf->sigma_y);
+			write_parameter(file, ", ", "angle", ndf->angle);
 		}
 		fputs("},\n", file);
 	}

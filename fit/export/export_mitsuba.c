@@ -66,7 +66,12 @@ static void write_lobe(FILE *file, const char *indent, const char *id, const str
 	snprintf(inner, sizeof inner, "%s\t", indent);
 	fprintf(file, "%s<bsdf type=\"roughconductor\"%s>\n", indent, id);
 	fprintf(file, "%s<string name=\"distribution\" value=\"%s\"/>\n", inner, ndf_name(model->ndf.class));
-	write_value(file, inner, "float", "alpha", model->ndf.sigma_x);
+	if (export_has_axes(model)) {
+		write_value(file, inner, "float", "alpha_u", model->ndf.sigma_x);
+		write_value(file, inner, "float", "alpha_v", model->ndf.sigma_y);
+	} else {
+		write_value(file, inner, "float", "alpha", model->ndf.sigma_x);
+	}
 	if (model->fresnel == FRESNEL_NONE) {
 		fprintf(file, "%s<string name=\"material\" value=\"none\"/>\n", inner);
 	} else {
@@ -86,6 +91,7 @@ static enum status mitsuba_write(const struct export *export, FILE *file, struct
 	export_identifier(export, name);
 	snprintf(id, sizeof id, " id=\"%s\"", name);
 	export_comment(export, file, "<!-- ", " -->");
+	export_comment_axes(export, file, "<!-- ", "alpha_u is the roughness along the shape's dp/du", " -->");
 	fprintf(file, "<scene version=\"3.0.0\">\n");
 	if (!(ks > 0)) {
 		write_diffuse(file, "\t", id, model->kd, 1);

@@ -45,14 +45,19 @@ static void write_diffuse(FILE *file, const double kd[3], double weight)
 
 static void write_lobe(FILE *file, const struct cook_torrance *model)
 {
-	char n[CSV_NUMBER_SIZE], k[CSV_NUMBER_SIZE], sigma[CSV_NUMBER_SIZE];
+	char n[CSV_NUMBER_SIZE], k[CSV_NUMBER_SIZE], sigma[CSV_NUMBER_SIZE], sigma_y[CSV_NUMBER_SIZE];
 	csv_number(n, model->n);
 	csv_number(k, model->fresnel == FRESNEL_CONDUCTOR ? model->k : 0);
 	csv_number(sigma, model->ndf.sigma_x);
 	fprintf(file,
 		"\"string type\" \"conductor\" \"spectrum eta\" [ 200 %s 1000 %s ] \"spectrum k\" [ 200 %s 1000 %s ]\n",
 		n, n, k, k);
-	fprintf(file, "    \"float roughness\" %s \"bool remaproughness\" false\n", sigma);
+	if (export_has_axes(model))
+		fprintf(file, "    \"float uroughness\" %s \"float vroughness\" %s", sigma,
+			csv_number(sigma_y, model->ndf.sigma_y));
+	else
+		fprintf(file, "    \"float roughness\" %s", sigma);
+	fprintf(file, " \"bool remaproughness\" false\n");
 }
 
 static enum status pbrt_write(const struct export *export, FILE *file, struct error *error)
@@ -62,6 +67,7 @@ static enum status pbrt_write(const struct export *export, FILE *file, struct er
 	(void)error;
 	export_identifier(export, name);
 	export_comment(export, file, "# ", "");
+	export_comment_axes(export, file, "# ", "uroughness is that along the shape's dp/du", "");
 	fprintf(file, "MakeNamedMaterial \"%s_diffuse\" ", name);
 	write_diffuse(file, model->kd, model->ks[0]);
 	if (!(model->ks[0] > 0)) {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/export/gray_specular.h"
-#include "fit/error/entries.h"
-#include "fit/error/sample_set.h"
+#include "fit/error/entry_at.h"
 #include "fit/error/weighted_median.h"
 
 #include <stdlib.h>
@@ -11,22 +10,15 @@ static size_t lobe_and_weight(const struct measurement *measurement, const struc
 			      const struct cook_torrance *model, struct weighted_value *wanted, size_t *at)
 {
 	const struct entries entries = entries_make(fit->criterion.bins, measurement->n_phi_d);
-	const double min_cos = max_theta_cos(fit->criterion.max_theta);
-	size_t n = 0, entry = 0;
-	for (int i = 0; i < MERL_THETA_H; i++)
-		for (int j = 0; j < MERL_THETA_D; j++)
-			for (int k = 0; k < measurement->n_phi_d; k++, entry++) {
-				struct vec3 wi, wo;
-				if (entry_is_missing(measurement, &fit->criterion, entry))
-					continue;
-				entries_dirs(&entries, i, j, k, &wi, &wo);
-				if (!entry_in_range(wi, wo, min_cos))
-					continue;
-				wanted[n] = (struct weighted_value){
-					(float)cook_torrance_lobe(model, wi, wo),
-					(float)weight_at(fit->criterion.weight, i, j, wi.z, wo.z)};
-				at[n++] = entry;
-			}
+	size_t n = 0;
+	for (size_t e = 0; e < measurement_count(measurement); e++) {
+		struct entry_at entry;
+		if (!entry_at(measurement, &entries, &fit->criterion, e, &entry))
+			continue;
+		wanted[n] = (struct weighted_value){(float)cook_torrance_lobe(model, entry.wi, entry.wo),
+						    (float)entry.weight};
+		at[n++] = e;
+	}
 	return n;
 }
 
@@ -37,11 +29,12 @@ enum status gray_specular(const struct measurement *measurement, const struct fi
 	struct weighted_value *lobe = calloc(measurement_count(measurement), sizeof *lobe);
 	struct weighted_value *wanted = calloc(measurement_count(measurement), sizeof *wanted);
 	size_t *at = calloc(measurement_count(measurement), sizeof *at);
+	float *const *plane = measurement->scattered ? measurement->scattered->value : measurement->value;
 	const bool ready = lobe && wanted && at;
 	const size_t n = ready ? lobe_and_weight(measurement, fit, model, lobe, at) : 0;
 	for (int c = 0; c < MERL_CHANNELS && ready; c++) {
 		for (size_t i = 0; i < n; i++) {
-			const double rest = (double)measurement->value[c][at[i]] - ks * (double)lobe[i].value;
+			const double rest = (double)plane[c][at[i]] - ks * (double)lobe[i].value;
 			wanted[i] = (struct weighted_value){(float)(M_PI * rest), lobe[i].weight};
 		}
 		model->ks[c] = ks;

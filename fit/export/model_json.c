@@ -74,6 +74,14 @@ static enum status read_nodes(const json_t *json, struct model_json *read, struc
 	return STATUS_OK;
 }
 
+/* Those that can be have no parameters but sigma and gamma, or an x of 2. */
+static enum status read_axes(const json_t *parameters, struct ndf *ndf)
+{
+	const double sigma_y = number_of(json_object_get(parameters, "sigma_y"));
+	const enum status status = ndf_init(ndf, ndf->class, ndf->sigma_x, sigma_y, ndf->gamma);
+	return status != STATUS_OK ? status : ndf_turn(ndf, number_of(json_object_get(parameters, "angle")));
+}
+
 static enum status read_ndf(const json_t *json, struct model_json *read, struct error *error)
 {
 	const struct ndf_class *class = ndf_find(text_of(json, "ndf"));
@@ -90,6 +98,8 @@ static enum status read_ndf(const json_t *json, struct model_json *read, struct 
 		value[i] = number_of(json_object_get(parameters, ndf_param_at(class, i)->name));
 	if (ndf_init_params(&read->model.ndf, class, value) != STATUS_OK)
 		return bad("parameters", "those of the distribution", error);
+	if (json_object_get(parameters, "sigma_y") && read_axes(parameters, &read->model.ndf) != STATUS_OK)
+		return bad("parameters", "sigma, sigma_y and angle of a distribution that can be anisotropic", error);
 	if (form != LAMBDA_EXACT && ndf_set_lambda_form(&read->model.ndf, form) != STATUS_OK)
 		return bad("lambda", "a form that the distribution has", error);
 	return STATUS_OK;

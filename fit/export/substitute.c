@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/export/substitute.h"
 #include "data_readers/text_quote.h"
+#include "fit/error/model_samples.h"
 #include "fit/error/model_table.h"
 #include "fit/export/export_format.h"
 #include "fit/export/gray_specular.h"
@@ -55,8 +56,9 @@ bool substitute_needed(const struct target *target, const struct cook_torrance *
 		add_text(text, " no Fresnel term %s,", fresnel_name(model->fresnel));
 	if (target->gray && !is_gray(model->ks))
 		add_text(text, " no ks of its own for each channel,");
-	if (target->sigma_max > 0 && model->ndf.sigma_x / model->ndf.stretch > target->sigma_max)
-		add_text(text, " no roughness of %.5g,", model->ndf.sigma_x);
+	const double sigma = fmax(model->ndf.sigma_x, model->ndf.sigma_y);
+	if (target->sigma_max > 0 && sigma / model->ndf.stretch > target->sigma_max)
+		add_text(text, " no roughness of %.5g,", sigma);
 	const size_t length = strlen(text);
 	if (why && length)
 		snprintf(why, EXPORT_TEXT, "%.*s", (int)length - 1, text);
@@ -66,12 +68,14 @@ bool substitute_needed(const struct target *target, const struct cook_torrance *
 const struct measurement *substitute_measurement(const struct export_source *source, struct measurement *own)
 {
 	*own = (struct measurement){0};
+	const int threads = source->fit->threads;
 	if (source->measurement)
 		return source->measurement;
-	return model_table(source->model, source->fit->criterion.bins, 180, source->fit->criterion.max_theta,
-			   source->fit->threads, own) != STATUS_OK
-		       ? NULL
-		       : own;
+	const enum status status = export_has_axes(source->model)
+					   ? model_samples(source->model, threads, own)
+					   : model_table(source->model, source->fit->criterion.bins, 180,
+							 source->fit->criterion.max_theta, threads, own);
+	return status != STATUS_OK ? NULL : own;
 }
 
 /* The model's own distribution if the target has it, else all that it has. */
@@ -86,16 +90,18 @@ static void choose_ndfs(const struct target *target, const struct cook_torrance 
 		fit->ndf[fit->n_ndf++] = ndf_find("beckmann");
 }
 
-/* The options of the fit: the source's data and weight, the target's lobe. */
+/* The options of the fit: the source's data, the target's lobe, the weight that is asked for. */
 static struct fit_options options_for(const struct target *target, const struct export_source *source)
 {
 	const struct cook_torrance *model = source->model;
 	struct fit_options fit = *source->fit;
 	choose_ndfs(target, model, &fit);
 	fit.criterion.gaf = target->gaf;
+	fit.criterion.weight = source->weight;
 	fit.fresnel = (target->fresnel & 1u << model->fresnel) ? model->fresnel : target->instead;
 	fit.lambda = LAMBDA_EXACT;
-	fit.sigma = fit.gamma = fit.ior = NAN;
+	fit.sigma = fit.sigma_y = fit.angle = fit.gamma = fit.ior = NAN;
+	fit.anisotropic = export_has_axes(model);
 	fit.diffuse = export_max(model->kd) > 0;
 	fit.specular = true;
 	fit.unbounded = false;
@@ -209,8 +215,10 @@ static enum status fit_substitute(struct export *export, const struct target *ta
 	if (status != STATUS_OK)
 		return error_set(error, status, "%s", status_str(status));
 	status = fit_once(context, measurement, &fit, &export->model, &value, error);
-	if (status == STATUS_OK && target->sigma_max > 0 && export->model.ndf.sigma_x > target->sigma_max) {
-		fit.sigma = target->sigma_max;
+	const struct ndf *ndf = &export->model.ndf;
+	if (status == STATUS_OK && target->sigma_max > 0 && fmax(ndf->sigma_x, ndf->sigma_y) > target->sigma_max) {
+		fit.sigma = fmin(ndf->sigma_x, target->sigma_max);
+		fit.sigma_y = fit.anisotropic ? fmin(ndf->sigma_y, target->sigma_max) : NAN;
 		status = fit_once(context, measurement, &fit, &export->model, &value, error);
 	}
 	if (status == STATUS_OK && target->gray)
@@ -235,31 +243,34 @@ static void name_data(const struct export_source *source, char name[TEXT_QUOTE_S
 			 source->measurement ? "the measurement" : "a table of the model itself");
 }
 
-static enum status report_cost(struct export *export, const struct measurement *measurement, struct error *error)
+void substitute_cost(struct export *export, const double before[WEIGHT_COUNT], const double after[WEIGHT_COUNT])
 {
-	const struct fit_options *fit = export->source.fit;
-	const enum weight fitted = fit->criterion.weight;
-	struct fit_metrics before, after;
+	const enum weight fitted = export->source.weight;
+	const bool measured = export->source.measurement != NULL;
 	char name[TEXT_QUOTE_SIZE];
-	enum status status = fit_eval(measurement, export->source.model, fit, &before, error);
-	if (status == STATUS_OK)
-		status = fit_eval(measurement, &export->model, fit, &after, error);
-	if (status != STATUS_OK)
-		return status;
 	name_data(&export->source, name);
 	snprintf(export->cost, sizeof export->cost,
-		 "error of the model %.5g, of what stands here %.5g (weight %s, against %s)",
-		 export->source.measurement ? before.error[fitted] : 0.0, after.error[fitted], weight_name(fitted),
-		 name);
+		 "error of the model %.5g, of what stands here %.5g (weight %s, under which it was fitted, against %s)",
+		 measured ? before[fitted] : 0.0, after[fitted], weight_name(fitted), name);
 	for (enum weight weight = 0; weight < WEIGHT_COUNT; weight++) {
 		const size_t used = strlen(export->cost);
 
 		if (weight != fitted)
 			snprintf(export->cost + used, sizeof export->cost - used, "; weight %s: %.5g, %.5g",
-				 weight_name(weight), export->source.measurement ? before.error[weight] : 0.0,
-				 after.error[weight]);
+				 weight_name(weight), measured ? before[weight] : 0.0, after[weight]);
 	}
-	return STATUS_OK;
+}
+
+static enum status report_cost(struct export *export, const struct measurement *measurement, struct error *error)
+{
+	const struct fit_options *fit = export->source.fit;
+	struct fit_metrics before, after;
+	enum status status = fit_eval(measurement, export->source.model, fit, &before, error);
+	if (status == STATUS_OK)
+		status = fit_eval(measurement, &export->model, fit, &after, error);
+	if (status == STATUS_OK)
+		substitute_cost(export, before.error, after.error);
+	return status;
 }
 
 /* Uses the model as it is, its distribution under the name that the target has for it. */
@@ -273,7 +284,7 @@ static void use_as_it_is(struct export *export)
 
 static enum status check_sigma(const struct export *export, const struct target *target, struct error *error)
 {
-	const double sigma = export->model.ndf.sigma_x;
+	const double sigma = fmin(export->model.ndf.sigma_x, export->model.ndf.sigma_y);
 	if (!(export_max(export->model.ks) > 0) || sigma >= target->sigma_min)
 		return STATUS_OK;
 	return error_set(error, STATUS_UNSUPPORTED, "%s takes a roughness of %.5g for a mirror", target->name, sigma);

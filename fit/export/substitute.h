@@ -28,4 +28,7 @@ MUST_CHECK enum status substitute_prepare(struct export *export, const struct ta
  * *own, to be freed by the caller; NULL and no memory otherwise. */
 const struct measurement *substitute_measurement(const struct export_source *source, struct measurement *own);
 
+/* substitute_cost - export->cost from the errors of the model and of its substitute under each weight. */
+void substitute_cost(struct export *export, const double before[WEIGHT_COUNT], const double after[WEIGHT_COUNT]);
+
 #endif

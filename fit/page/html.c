@@ -7,17 +7,43 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Writes the first character; returns how many bytes it takes. */
+static size_t put_character(FILE *page, const char *text)
+{
+	const size_t length = text_printable(text);
+	if (strchr("&<>\"'", *text))
+		fprintf(page, "&#%d;", *text);
+	else if (length)
+		fwrite(text, 1, length, page);
+	else
+		fprintf(page, "\\x%02x", (unsigned)(unsigned char)*text);
+	return length ? length : 1;
+}
+
 void html_text(FILE *page, const char *text)
 {
+	while (*text)
+		text += put_character(page, text);
+}
+
+/* Greek letters are two bytes in UTF-8, the first of which is one of these. */
+static bool is_greek(const char *text, size_t length)
+{
+	return length == 2 && (*text == '\xce' || *text == '\xcf');
+}
+
+void html_typeset(FILE *page, const char *text)
+{
+	bool greek = false;
 	while (*text) {
-		const size_t length = text_printable(text);
-		if (strchr("&<>\"'", *text))
-			fprintf(page, "&#%d;", *text);
-		else if (length)
-			fwrite(text, 1, length, page);
+		const bool index = greek && text[0] == '_' && text[1] >= 'a' && text[1] <= 'z';
+		size_t length = 2;
+		if (index)
+			fprintf(page, "<sub>%c</sub>", text[1]);
 		else
-			fprintf(page, "\\x%02x", (unsigned)(unsigned char)*text);
-		text += length ? length : 1;
+			length = put_character(page, text);
+		greek = !index && is_greek(text, length);
+		text += length;
 	}
 }
 

@@ -11,6 +11,9 @@
  * as \xNN. */
 void html_text(FILE *page, const char *text);
 
+/* html_typeset - as html_text(), but a letter behind a Greek one and a low line is an index: θ_h. */
+void html_typeset(FILE *page, const char *text);
+
 /* html_file - the file as a data URI: "data:TYPE;base64,...". STATUS_IO, STATUS_NO_MEMORY: nothing was written then. */
 MUST_CHECK enum status html_file(FILE *page, const char *path, const char *type, struct error *error);
 

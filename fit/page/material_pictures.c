@@ -4,16 +4,22 @@
 #include "fit/cli/text_stream.h"
 
 const struct page_picture material_pictures[PICTURES] = {
-	[PICTURE_SPHERES] = {.type = "image/png",
-			     .alt = "spheres in the same light, as measured and as each fit has it, and their "
-				    "differences in false colours."},
+	[PICTURE_SPHERES] = {.type = "image/png", .alt = "sphere, "},
 	[PICTURE_SLICES] =
-		{.type = "image/svg+xml",
+		{.type = "image/png",
 		 .plot = true,
-		 .alt = "measured and fitted BRDF over theta_h, on a logarithmic scale, for theta_d of 0, 15, "
+		 .alt = "measured and fitted BRDF over theta_h, on a logarithmic scale, per channel, for theta_d of 0, "
+			"15, "
 			"30, 45, 60 and 75 degrees at phi_d = 90 degrees.",
-		 .caption = "Slices, measured and fitted: \xcf\x86_d = 90\xc2\xb0, six \xce\xb8_d, mean of the "
-			    "channels."},
+		 .caption =
+			 "Slices, measured and fitted, at right angles to the mirror plane: \xcf\x86_d = 90\xc2\xb0, "
+			 "six \xce\xb8_d."},
+	[PICTURE_SLICES_0] = {.type = "image/png",
+			      .plot = true,
+			      .alt = "measured and fitted BRDF over theta_h, on a logarithmic scale, per channel, for "
+				     "theta_d of 0, 15, "
+				     "30, 45, 60 and 75 degrees at phi_d = 0.",
+			      .caption = "The same in the mirror plane: \xcf\x86_d = 0. Lines end at the horizon."},
 	[PICTURE_MAP] = {.type = "image/png",
 			 .plot = true,
 			 .alt = "heat maps of the error over theta_h and theta_d, one a fit; the errors in all are in "

@@ -7,7 +7,7 @@
 #include "fit/render/picture_error.h"
 
 /* In the order of the page. */
-enum material_picture { PICTURE_SPHERES, PICTURE_SLICES, PICTURE_MAP, PICTURE_NDF, PICTURES };
+enum material_picture { PICTURE_SPHERES, PICTURE_SLICES, PICTURE_SLICES_0, PICTURE_MAP, PICTURE_NDF, PICTURES };
 
 /* Without paths; the spheres have no caption yet. */
 extern const struct page_picture material_pictures[PICTURES];

@@ -2,6 +2,7 @@
 #include "fit/page/page.h"
 #include "fit/page/html.h"
 #include "fit/page/page_style.h"
+#include "fit/sources/row_options.h"
 
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
@@ -36,11 +37,15 @@ static void put_text_cell(FILE *page, const char *text, bool is_long)
 	fputs("</td>", page);
 }
 
-/* A table that scrolls by itself where it is wider than the page. */
-static void begin_table(FILE *page, const char *class, const char *label)
+/* A table that scrolls by itself where it is wider than the page. of: NULL, or whose it is, which tells it from others. */
+static void begin_table(FILE *page, const char *class, const char *label, const char *of)
 {
-	fputs("<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"", page);
+	fputs("<section class=\"wide\" tabindex=\"0\" aria-label=\"", page);
 	html_text(page, label);
+	if (of) {
+		fputs(", ", page);
+		html_text(page, of);
+	}
 	fprintf(page, "\"><table class=\"%s\">\n<thead><tr>", class);
 }
 
@@ -54,25 +59,51 @@ static void put_head(FILE *page, const char *text, const char *class, bool sorte
 
 static void end_table(FILE *page)
 {
-	fputs("</tbody></table></div>\n", page);
+	fputs("</tbody></table></section>\n", page);
 }
 
-static enum status put_picture(FILE *page, const char *material, const struct page_picture *picture,
-			       struct error *error)
+char *page_part_path(const char *path, int part)
 {
-	if (!picture->path)
-		return STATUS_OK;
-	fprintf(page, "<figure><div class=\"pan\"><img loading=\"lazy\"%s alt=\"",
-		picture->plot ? " class=\"plot\"" : "");
+	char *file;
+	return asprintf(&file, "%s-%d.png", path, part) < 0 ? NULL : file;
+}
+
+/* part: NULL, or what this part of the picture shows. */
+static enum status put_image(FILE *page, const char *material, const struct page_picture *picture, const char *part,
+			     const char *path, struct error *error)
+{
+	if (!path)
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	fprintf(page, "<img loading=\"lazy\"%s alt=\"", picture->plot ? " class=\"plot\"" : "");
 	if (material) {
 		html_text(page, material);
 		fputs(": ", page);
 	}
 	html_text(page, picture->alt);
+	if (part)
+		html_text(page, part);
 	fputs("\" src=\"", page);
-	const enum status status = html_file(page, picture->path, picture->type, error);
-	fputs("\"></div>\n<figcaption>", page);
-	html_text(page, picture->caption);
+	const enum status status = html_file(page, path, picture->type, error);
+	fputs("\">\n", page);
+	return status;
+}
+
+static enum status put_picture(FILE *page, const char *material, const struct page_picture *picture,
+			       struct error *error)
+{
+	enum status status = STATUS_OK;
+	if (!picture->path)
+		return status;
+	fputs(picture->parts ? "<figure><div class=\"spheres\">\n" : "<figure>", page);
+	if (!picture->parts)
+		status = put_image(page, material, picture, NULL, picture->path, error);
+	for (int p = 0; p < picture->parts && status == STATUS_OK; p++) {
+		char *path = page_part_path(picture->path, p);
+		status = put_image(page, material, picture, picture->part[p], path, error);
+		free(path);
+	}
+	fputs(picture->parts ? "</div><figcaption>" : "<figcaption>", page);
+	html_typeset(page, picture->caption);
 	fputs("</figcaption></figure>\n", page);
 	return status;
 }
@@ -128,8 +159,9 @@ static void put_summary_row(FILE *page, const struct error_grid *grid, int ndf, 
 			value[n++] = grid->line[m].error[ndf];
 		wins += grid->line[m].best == ndf;
 	}
+	char label[ERROR_GRID_LABEL];
 	fputs("<tr><th scope=\"row\">", page);
-	html_text(page, grid->ndf[ndf]);
+	html_text(page, error_grid_label(grid, ndf, label));
 	fputs("</th>", page);
 	put_number(page, (double)n, false);
 	put_number(page, n ? gsl_stats_mean(value, 1, n) : NAN, false);
@@ -146,7 +178,7 @@ static enum status put_summary(FILE *page, const struct error_grid *grid)
 	if (!value)
 		return STATUS_NO_MEMORY;
 	fputs("<h2 id=\"summary\">Summary</h2>\n", page);
-	begin_table(page, "summary", "Summary by NDF");
+	begin_table(page, "summary", "Summary by NDF", NULL);
 	for (size_t h = 0; h < sizeof head / sizeof *head; h++)
 		put_head(page, head[h], h ? "n" : "", false);
 	fputs("</tr></thead><tbody>\n", page);
@@ -186,17 +218,16 @@ static void put_material_row(FILE *page, const struct error_grid *grid, const st
 
 static void put_materials(FILE *page, const struct error_grid *grid, bool divided)
 {
-	static const char *const shape[] = {"sigma", "gamma", "n"};
-	fputs("<h2 id=\"materials\">Materials</h2>\n<p class=\"soft\">Lowest errors are bold; sigma, gamma and n are "
-	      "those of "
-	      "the best fit.</p>\n",
+	static const char *const shape[] = {"\xcf\x83", "\xce\xb3", "n"};
+	fputs("<h2 id=\"materials\">Materials</h2>\n<p class=\"soft\">Lowest errors are bold; \xcf\x83, \xce\xb3 "
+	      "and n are those of the best fit.</p>\n",
 	      page);
-	begin_table(page, "sortable", "Materials");
+	begin_table(page, "sortable", "Materials", NULL);
 	put_head(page, "material", "", true);
 	put_head(page, "best", "", false);
 	for (int n = 0; n < grid->n_ndf; n++) {
-		char head[64];
-		snprintf(head, sizeof head, "E, %.32s", grid->ndf[n]);
+		char head[ERROR_GRID_LABEL + 8], label[ERROR_GRID_LABEL];
+		snprintf(head, sizeof head, "E, %s", error_grid_label(grid, n, label));
 		put_head(page, head, "n", false);
 	}
 	for (size_t s = 0; s < sizeof shape / sizeof *shape; s++)
@@ -239,8 +270,8 @@ static const struct {
 	enum result_column column;
 	const char *name;
 } parameters[] = {
-	{RESULT_ERROR, "E"},   {RESULT_SIGMA, "sigma"}, {RESULT_GAMMA, "gamma"}, {RESULT_IOR, "n"},
-	{RESULT_KD_R, "kd r"}, {RESULT_KD_G, "g"},      {RESULT_KD_B, "b"},      {RESULT_KS_R, "ks r"},
+	{RESULT_ERROR, "E"},   {RESULT_SIGMA, "\xcf\x83"}, {RESULT_GAMMA, "\xce\xb3"}, {RESULT_IOR, "n"},
+	{RESULT_KD_R, "kd r"}, {RESULT_KD_G, "g"},         {RESULT_KD_B, "b"},         {RESULT_KS_R, "ks r"},
 	{RESULT_KS_G, "g"},    {RESULT_KS_B, "b"},
 };
 enum { PARAMETERS = sizeof parameters / sizeof *parameters };
@@ -268,11 +299,27 @@ static void put_row_head(FILE *page, char *const *row)
 	fputs("</th>", page);
 }
 
+/* A row that knows its model as options of eval, export, render and synth: the script gives it a button that copies them. */
+static void begin_parameters_row(FILE *page, char *const *row)
+{
+	char *options = row_options(row);
+	fputs("<tr", page);
+	if (options) {
+		fputs(" data-options=\"", page);
+		html_text(page, options);
+		fputc('"', page);
+	}
+	free(options);
+	fputs("><th scope=\"row\">", page);
+	html_text(page, row[RESULT_NDF]);
+	fputs("</th>", page);
+}
+
 static void put_parameters(FILE *page, const struct material *material)
 {
 	enum { SHORT_PARAMS = 120 };
 	fputs("<h4>Parameters</h4>\n", page);
-	begin_table(page, "parameters", "Parameters");
+	begin_table(page, "parameters", "Parameters", material->file_name);
 	put_head(page, "NDF", "", false);
 	for (int p = 0; p < PARAMETERS; p++)
 		put_head(page, parameters[p].name, "n", false);
@@ -280,7 +327,7 @@ static void put_parameters(FILE *page, const struct material *material)
 	fputs("</tr></thead><tbody>\n", page);
 	for (size_t r = 0; r < material->n_rows; r++) {
 		char *const *row = material->row[r];
-		put_row_head(page, row);
+		begin_parameters_row(page, row);
 		for (int p = 0; p < PARAMETERS; p++)
 			put_number(page, result_number(row, parameters[p].column), false);
 		put_text_cell(page,
@@ -300,7 +347,7 @@ static void put_certainty(FILE *page, const struct material *material)
 		for (size_t r = 0; r < material->n_rows && is_certainty(c); r++)
 			shown[c] |= *material->row[r][c] != '\0';
 	fputs("<h4>How sure, and how near</h4>\n", page);
-	begin_table(page, "certainty", "Certainty and other errors");
+	begin_table(page, "certainty", "Certainty and other errors", material->file_name);
 	put_head(page, "NDF", "", false);
 	for (enum result_column c = 0; c < RESULT_COLUMNS; c++)
 		if (shown[c])
@@ -351,10 +398,40 @@ static void put_best(FILE *page, const struct error_grid *grid, const struct err
 		html_text(page, grid->ndf[line->best]);
 		fputs(", E ", page);
 		put_shown(page, line->error[line->best]);
+		fputs(" (weight ", page);
+		html_text(page, line->material->row[0][RESULT_WEIGHT]);
+		fputs(")", page);
 	} else {
 		fputs("no fit", page);
 	}
 	fputs("</span>", page);
+}
+
+/* Whether a fit of the same file under the weight that pictures agree with is on the page: then it stands next to this one. */
+static bool has_better_weight(const struct page *page, size_t m)
+{
+	const struct materials *materials = page->materials;
+	const char *path = materials->material[m].row[0][RESULT_PATH];
+	const size_t first = m < WEIGHT_COUNT ? 0 : m - WEIGHT_COUNT;
+	for (size_t i = first; i < materials->n && i <= m + WEIGHT_COUNT; i++) {
+		char *const *row = materials->material[i].row[0];
+		if (!strcmp(row[RESULT_PATH], path) && !strcmp(row[RESULT_WEIGHT], weight_name(WEIGHT_SOLID_ANGLE)))
+			return true;
+	}
+	return false;
+}
+
+static void put_hint(const struct page *page, size_t m)
+{
+	char *const *best = best_row(&page->grid, &page->grid.line[m]);
+	if (!best || !result_looks_wrong(best) || has_better_weight(page, m))
+		return;
+	fputs("<p class=\"hint\">A fit with <code>--weight solid-angle</code> would most likely look much more like "
+	      "the "
+	      "measured one: under that weight the error of this fit is ",
+	      page->file);
+	put_shown(page->file, result_number(best, RESULT_ERROR_SOLID_ANGLE));
+	fputs(".</p>\n", page->file);
 }
 
 enum status page_material(const struct page *page, size_t m, const struct page_picture *picture, int n_pictures,
@@ -372,6 +449,7 @@ enum status page_material(const struct page *page, size_t m, const struct page_p
 	for (int p = 0; p < n_pictures && status == STATUS_OK; p++)
 		status = put_picture(file, material->name, &picture[p], error);
 	put_missing(file, missing);
+	put_hint(page, m);
 	put_parameters(file, material);
 	put_certainty(file, material);
 	put_origin(file, material);

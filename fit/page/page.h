@@ -10,13 +10,18 @@
 
 /* struct page_picture - a picture in a file. */
 struct page_picture {
-	char *path;                /* NULL: no picture, nothing is shown */
-	const char *type;          /* "image/png", "image/svg+xml" */
-	bool plot;                 /* drawn on white: turned over where the reader's system is dark */
-	const char *alt, *caption; /* `alt` follows the name of the material, if there is one */
+	char *path;                         /* NULL: no picture, nothing is shown */
+	int parts;                          /* > 0: so many pictures side by side, page_part_path() of `path` */
+	const char *part[FIT_NDFS_MAX + 1]; /* what each shows, behind `alt` */
+	const char *type;                   /* "image/png", "image/svg+xml" */
+	bool plot;                          /* drawn on white: turned over where the reader's system is dark */
+	const char *alt, *caption;          /* `alt` follows the name of the material, if there is one */
 };
 
-enum { PAGE_MATERIALS_MAX = 150 };
+/* page_part_path - the file of a part, newly allocated; NULL: out of memory. */
+char *page_part_path(const char *path, int part);
+
+enum { PAGE_MATERIALS_MAX = 50 };
 #define PAGE_DIRECTORY "materials"
 
 /* struct page - a page being written. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* report_spheres - the spheres of one material, side by side in one picture. */
+/* report_spheres - the spheres of one material, a picture each. */
 #ifndef REPORT_SPHERES_H
 #define REPORT_SPHERES_H
 
@@ -7,8 +7,8 @@
 #include "fit/render/picture_error.h"
 #include "fit/sources/materials.h"
 
-/* report_spheres - a PNG of spheres in the same light: as measured, then as each fit has it, and below each of these its
- * difference from the measured one in false colours.
+/* report_spheres - PNGs of spheres in the same light, page_part_path() of `path`: part 0 as measured, with the legend of the
+ * false colours; part f + 1 as fit f has it, and below that its difference from the measured one in false colours.
  * Returns: in picture[] the error of each fit's sphere against the measured one
  * Errors:  STATUS_UNSUPPORTED: a build without libpng; STATUS_IO, STATUS_NO_MEMORY, STATUS_INTERRUPTED */
 MUST_CHECK enum status report_spheres(const char *path, const struct material_data *data,

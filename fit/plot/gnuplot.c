@@ -43,7 +43,7 @@ void gnuplot_begin(FILE *file, const char *name, int width, int height)
 		"set grid lc rgb \"#dddddd\" lt 1\n"
 		"set tics nomirror\n"
 		"set border 3\n"
-		"set key noenhanced samplen 2\n"
+		"set key noenhanced samplen 3.5\n"
 		"do for [format in \"png svg\"] {\n"
 		"if (format eq \"png\") {\n"
 		"\tset terminal pngcairo size %d,%d font \"sans,11\"\n"

@@ -46,6 +46,16 @@ const char *plot_colour(const char *ndf, int i)
 	return other[(size_t)i % (sizeof other / sizeof *other)];
 }
 
+int plot_dash(const char *ndf, int i)
+{
+	static const char *const own[] = {"std", "ggx", "beckmann", "pl", "low", "gtr"};
+	enum { DASHES = 5, OWN = sizeof own / sizeof *own };
+	for (int n = 0; n < OWN; n++)
+		if (!strcmp(own[n], ndf))
+			return 1 + n % DASHES;
+	return 1 + i % DASHES;
+}
+
 void plot_range_add(struct plot_range *range, double x)
 {
 	if (!(x > 0 && isfinite(x)))

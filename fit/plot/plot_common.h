@@ -18,6 +18,9 @@ void plot_text(FILE *file, const char *text);
 /* plot_colour - of an NDF's curve, the same in all plots; i: number of the curve, for NDFs without a colour of their own. */
 const char *plot_colour(const char *ndf, int i);
 
+/* plot_dash - number of its dashes, which tell curves apart where colours do not: 1 is a solid line. */
+int plot_dash(const char *ndf, int i);
+
 /* struct plot_range - the range of a logarithmic axis, grown value by value; a zeroed one is empty. */
 struct plot_range {
 	double low, high;

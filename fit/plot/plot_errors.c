@@ -14,10 +14,11 @@ static enum status write_errors(const char *directory, const struct error_grid *
 	const enum status status = plot_open(&file, directory, "errors.csv", error);
 	if (status != STATUS_OK)
 		return status;
+	char label[ERROR_GRID_LABEL];
 	fputs("material", file.stream);
 	for (int n = 0; n < grid->n_ndf; n++) {
 		fputc(',', file.stream);
-		plot_text(file.stream, grid->ndf[n]);
+		plot_text(file.stream, error_grid_label(grid, n, label));
 	}
 	fputc('\n', file.stream);
 	for (size_t m = 0; m < grid->n_fitted; m++) {
@@ -29,9 +30,17 @@ static enum status write_errors(const char *directory, const struct error_grid *
 	return atomic_file_commit(&file, error);
 }
 
+/* The shape of an NDF's points. They are not joined: between two materials there is nothing. */
+static int plot_point(int n)
+{
+	static const int shape[] = {7, 4, 8, 1, 12, 2};
+	return shape[n % (int)(sizeof shape / sizeof *shape)];
+}
+
 static enum status write_errors_script(const char *directory, const struct error_grid *grid, struct error *error)
 {
 	enum { LABELS_MOST = 130 };
+	char label[ERROR_GRID_LABEL];
 	struct atomic_file file;
 	const int width = grid->n_fitted < 20            ? 800
 			  : grid->n_fitted > LABELS_MOST ? 2000
@@ -49,10 +58,10 @@ static enum status write_errors_script(const char *directory, const struct error
 		grid->n_fitted > LABELS_MOST ? "unset xtics\nset xlabel \"materials\"\n" : "");
 	for (int n = 0; n < grid->n_ndf; n++) {
 		fprintf(file.stream,
-			"%s\"errors.csv\" skip 1 using 0:%d%s with linespoints pt 7 ps 0.6 lw 1.5 lc rgb \"%s\" title ",
-			n ? ", " : "plot ", n + 2, grid->n_fitted > LABELS_MOST ? "" : ":xtic(1)",
+			"%s\"errors.csv\" skip 1 using 0:%d%s with points pt %d ps 0.9 lw 1.5 lc rgb \"%s\" title ",
+			n ? ", " : "plot ", n + 2, grid->n_fitted > LABELS_MOST ? "" : ":xtic(1)", plot_point(n),
 			plot_colour(grid->ndf[n], n));
-		gnuplot_string(file.stream, grid->ndf[n]);
+		gnuplot_string(file.stream, error_grid_label(grid, n, label));
 	}
 	fputc('\n', file.stream);
 	gnuplot_end(file.stream);

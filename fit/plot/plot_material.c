@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const plot_material_names[] = {"ndf", "slices", "map"};
+const char *const plot_material_names[] = {"ndf", "slices", "slices_0", "map"};
 const char *const plot_material_tables[] = {"ndf_D.csv", "ndf_G1.csv", "slices.csv", "map.csv"};
 
 /* Room for the axes and one panel of a grid of them. */
@@ -30,6 +30,11 @@ static double theta_h_deg(enum bins bins, int i)
 static double theta_d_deg(enum bins bins, int j)
 {
 	return degrees(bins_angles(bins, 0, j, 0).theta_d);
+}
+
+static double phi_d_deg(enum bins bins, enum slice_phi_d k)
+{
+	return degrees(bins_angles(bins, 0, 0, k).phi_d);
 }
 
 static enum bins bins_of(const struct material_data *data)
@@ -144,23 +149,23 @@ static void put_D_panel(FILE *file, const struct material_data *data, int f)
 	fprintf(file,
 		"\nplot \"ndf_D.csv\" skip 1 using 1:%d with lines lw 5 lc rgb \"#c0c0c0\" title \"read off "
 		"the "
-		"data\", \"\" skip 1 using 1:%d with lines lw 2 lc rgb \"%s\" title \"D of the fit\"\n",
-		2 * f + 3, 2 * f + 2, plot_colour(data->fit[f].ndf, f));
+		"data\", \"\" skip 1 using 1:%d with lines lw 2 dt %d lc rgb \"%s\" title \"D of the fit\"\n",
+		2 * f + 3, 2 * f + 2, plot_dash(data->fit[f].ndf, f), plot_colour(data->fit[f].ndf, f));
 }
 
 static void put_G1_panel(FILE *file, const struct material_data *data)
 {
-	fputs("set title \"G_1; dashed: of the D read off the data\" enhanced\n"
+	fputs("set title \"G_1; thin: of the D read off the data\" enhanced\n"
 	      "unset logscale y\nset ytics 0.2\nset format y \"%g\"\nset yrange [0:1.05]\nunset nonlinear x\nset xtics "
 	      "15\n"
 	      "set xlabel \"θ (degrees)\"\nset ylabel \"\"\nset key left bottom\nplot ",
 	      file);
 	for (int f = 0; f < data->n; f++) {
-		fprintf(file, "%s\"ndf_G1.csv\" skip 1 using 1:%d with lines lw 2 lc rgb \"%s\" title ", f ? ", " : "",
-			2 * f + 2, plot_colour(data->fit[f].ndf, f));
+		fprintf(file, "%s\"ndf_G1.csv\" skip 1 using 1:%d with lines lw 2.5 dt %d lc rgb \"%s\" title ",
+			f ? ", " : "", 2 * f + 2, plot_dash(data->fit[f].ndf, f), plot_colour(data->fit[f].ndf, f));
 		gnuplot_string(file, data->fit[f].ndf);
-		fprintf(file, ", \"\" skip 1 using 1:%d with lines lw 1.5 dt 2 lc rgb \"%s\" notitle", 2 * f + 3,
-			plot_colour(data->fit[f].ndf, f));
+		fprintf(file, ", \"\" skip 1 using 1:%d with lines lw 1 dt %d lc rgb \"%s\" notitle", 2 * f + 3,
+			plot_dash(data->fit[f].ndf, f), plot_colour(data->fit[f].ndf, f));
 	}
 	fputc('\n', file);
 }
@@ -208,28 +213,46 @@ enum status plot_ndf(const char *directory, const struct material_data *data, st
 /* slices */
 
 static const int slice_theta_d[] = {0, 15, 30, 45, 60, 75};
-enum { SLICES = sizeof slice_theta_d / sizeof *slice_theta_d, SLICE_MEAN = 3 /* column of the first mean */ };
+enum {
+	SLICES = sizeof slice_theta_d / sizeof *slice_theta_d,
+	SLICE_FIRST = 5, /* column of the first measured channel, behind that of their mean */
+	SLICE_WIDTH = 205,
+	SLICE_HEIGHT = 200
+};
 
-/* Three channels and their mean. */
-static double put_channels(FILE *file, const double f[MERL_CHANNELS])
+/* Both planes have their lines in the file, one after the other. */
+static const struct {
+	enum slice_phi_d phi_d;
+	const char *name, *what;
+} slice_planes[] = {
+	{SLICE_ACROSS, "slices", "measured and fitted at right angles to the mirror plane"},
+	{SLICE_IN_PLANE, "slices_0", "measured and fitted in the mirror plane"},
+};
+enum { SLICE_PLANES = sizeof slice_planes / sizeof *slice_planes };
+
+/* Mean of the three channels, and these. */
+static void put_channels(FILE *file, const double f[MERL_CHANNELS], struct plot_range *range)
 {
-	const double mean = (f[0] + f[1] + f[2]) / MERL_CHANNELS;
-	plot_number(file, mean);
-	for (int c = 0; c < MERL_CHANNELS; c++)
+	plot_number(file, (f[0] + f[1] + f[2]) / MERL_CHANNELS);
+	for (int c = 0; c < MERL_CHANNELS; c++) {
 		plot_number(file, f[c]);
-	return mean;
+		if (range)
+			plot_range_add(range, f[c]);
+	}
 }
 
-static void put_slice(FILE *file, const struct material_data *data, int j, struct plot_range *range)
+static void put_slice(FILE *file, const struct material_data *data, enum slice_phi_d phi_d, int j,
+		      struct plot_range *range)
 {
 	for (int i = 0; i < MERL_THETA_H; i++) {
 		double f[MERL_CHANNELS];
-		fprintf(file, "%.9g,%.9g", theta_d_deg(bins_of(data), j), theta_h_deg(bins_of(data), i));
-		slice_measured(&data->measurement, i, j, f);
-		plot_range_add(range, put_channels(file, f));
+		fprintf(file, "%.9g,%.9g,%.9g", phi_d_deg(bins_of(data), phi_d), theta_d_deg(bins_of(data), j),
+			theta_h_deg(bins_of(data), i));
+		slice_measured(&data->measurement, phi_d, i, j, f);
+		put_channels(file, f, range);
 		for (int n = 0; n < data->n; n++) {
-			slice_model(&data->fit[n].model, data->fit[n].options.criterion.bins, i, j, f);
-			put_channels(file, f);
+			slice_model(&data->fit[n].model, data->fit[n].options.criterion.bins, phi_d, i, j, f);
+			put_channels(file, f, NULL);
 		}
 		fputc('\n', file);
 	}
@@ -243,67 +266,75 @@ static enum status write_slices(const char *directory, const struct material_dat
 	const enum status status = plot_open(&file, directory, "slices.csv", error);
 	if (status != STATUS_OK)
 		return status;
-	put_header(file.stream, "theta_d_deg,theta_h_deg,measured_mean,measured_r,measured_g,measured_b", data, what,
-		   4);
-	for (int s = 0; s < SLICES; s++)
-		put_slice(file.stream, data, slice_theta_d[s], range);
+	put_header(file.stream, "phi_d_deg,theta_d_deg,theta_h_deg,measured_mean,measured_r,measured_g,measured_b",
+		   data, what, 4);
+	for (int p = 0; p < SLICE_PLANES; p++)
+		for (int s = 0; s < SLICES; s++)
+			put_slice(file.stream, data, slice_planes[p].phi_d, slice_theta_d[s], range);
 	return atomic_file_commit(&file, error);
 }
 
-/* Width of a column for the legend, where it would cover the curves of the first panel. */
-static int slices_legend(const struct material_data *data)
-{
-	return data->n > 3 ? 150 : 0;
-}
-
 /* The lines of one panel are next to each other in the file. */
-static void put_slice_panel(FILE *file, const struct material_data *data, int s)
+static void put_slice_panel(FILE *file, const struct material_data *data, int plane, int channel, int s)
 {
-	const int from = 1 + s * MERL_THETA_H, to = from + MERL_THETA_H - 1;
-	const bool left = s % 3 == 0, bottom = s >= SLICES - 3;
-	fprintf(file, "set title \"θ_d = %g°\"\n%s\n", theta_d_deg(bins_of(data), slice_theta_d[s]),
-		s > 0                     ? "unset key"
-		: slices_legend(data) > 0 ? "set key at screen 0.99,0.88 right top"
-					  : "set key right top");
+	static const char *const name[] = {"red", "green", "blue"};
+	const int from = 1 + (plane * SLICES + s) * MERL_THETA_H, to = from + MERL_THETA_H - 1;
+	const bool left = s == 0, top = channel == 0, bottom = channel == MERL_CHANNELS - 1;
+	if (top)
+		fprintf(file, "set title \"θ_d = %g°, φ_d = %g°\"\n", theta_d_deg(bins_of(data), slice_theta_d[s]),
+			phi_d_deg(bins_of(data), slice_planes[plane].phi_d));
+	else
+		fputs("unset title\n", file);
+	fputs(left && top ? "set key at screen 0.99,0.957 right top maxrows 1\n" : "unset key\n", file);
 	/* All panels have the same axes. */
-	fprintf(file, "set ylabel \"%s\"\nset format y \"%s\"\n", left ? "BRDF (1/sr)" : "", left ? "10^{%T}" : "");
+	fprintf(file, "set ylabel \"%s%s\"\nset format y \"%s\"\n", left ? name[channel] : "", left ? " (1/sr)" : "",
+		left ? "10^{%T}" : "");
 	fprintf(file, "set xlabel \"%s\"\nset format x \"%s\"\n", bottom ? "θ_h (degrees)" : "", bottom ? "%g" : "");
 	fprintf(file,
-		"plot \"slices.csv\" every ::%d::%d using 2:%d with lines lw 5 lc rgb \"#c0c0c0\" title \"measured\"",
-		from, to, SLICE_MEAN);
+		"plot \"slices.csv\" every ::%d::%d using 3:%d with lines lw 5 lc rgb \"#c0c0c0\" title \"measured\"",
+		from, to, SLICE_FIRST + channel);
 	for (int f = 0; f < data->n; f++) {
-		fprintf(file, ", \"\" every ::%d::%d using 2:%d with lines lw 1.8 lc rgb \"%s\" title ", from, to,
-			SLICE_MEAN + 4 * (f + 1), plot_colour(data->fit[f].ndf, f));
+		fprintf(file, ", \"\" every ::%d::%d using 3:%d with lines lw 1.8 dt %d lc rgb \"%s\" title ", from, to,
+			SLICE_FIRST + channel + 4 * (f + 1), plot_dash(data->fit[f].ndf, f),
+			plot_colour(data->fit[f].ndf, f));
 		gnuplot_string(file, data->fit[f].ndf);
 	}
 	fputc('\n', file);
 }
 
-enum status plot_slices(const char *directory, const struct material_data *data, struct error *error)
+static enum status write_slices_script(const char *directory, const struct material_data *data, int plane,
+				       const struct plot_range *range, struct error *error)
 {
-	struct plot_range range = {0, 0};
+	enum { LEFT = 80, RIGHT = 20, TOP = 112, BOTTOM = 60 };
+	const int width = LEFT + SLICES * SLICE_WIDTH + RIGHT, height = TOP + MERL_CHANNELS * SLICE_HEIGHT + BOTTOM;
+	char name[32], margins[96];
 	struct atomic_file file;
-	enum status status = write_slices(directory, data, &range, error);
-	if (status == STATUS_OK)
-		status = plot_open(&file, directory, "slices.gp", error);
+	snprintf(name, sizeof name, "%s.gp", slice_planes[plane].name);
+	const enum status status = plot_open(&file, directory, name, error);
 	if (status != STATUS_OK)
 		return status;
-	const int width = 3 * PANEL_WIDTH + slices_legend(data);
-	const double share = 3.0 * PANEL_WIDTH / width; /* of the panels */
-	char margins[96];
-	snprintf(margins, sizeof margins, "margins %.4g,%.4g,0.1,0.88 spacing %.4g,0.12", 0.07 * share, 0.98 * share,
-		 0.03 * share);
-	gnuplot_begin(file.stream, "slices", width, 40 + 2 * PANEL_HEIGHT);
-	put_grid(file.stream, SLICES, 3, margins,
-		 "measured and fitted at right angles to the mirror plane (φd = 90°), mean of the channels",
-		 data->name);
+	snprintf(margins, sizeof margins, "margins %.4g,%.4g,%.4g,%.4g spacing 0.01,0.02", (double)LEFT / width,
+		 1 - (double)RIGHT / width, (double)BOTTOM / height, 1 - (double)TOP / height);
+	gnuplot_begin(file.stream, slice_planes[plane].name, width, height);
+	put_grid(file.stream, MERL_CHANNELS * SLICES, SLICES, margins, slice_planes[plane].what, data->name);
 	put_theta_h_axis(file.stream);
-	plot_log_range(file.stream, &range, 5, 5);
-	for (int s = 0; s < SLICES; s++)
-		put_slice_panel(file.stream, data, s);
+	fputs("set xtics (0, 5, 20, 40, 60, \"\" 90)\n", file.stream);
+	plot_log_range(file.stream, range, 5, 5);
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		for (int s = 0; s < SLICES; s++)
+			put_slice_panel(file.stream, data, plane, c, s);
 	fputs("unset multiplot\n", file.stream);
 	gnuplot_end(file.stream);
 	return atomic_file_commit(&file, error);
+}
+
+enum status plot_slices(const char *directory, const struct material_data *data, struct error *error)
+{
+	struct plot_range range = {0, 0};
+	enum status status = write_slices(directory, data, &range, error);
+	for (int p = 0; p < SLICE_PLANES && status == STATUS_OK; p++)
+		status = write_slices_script(directory, data, p, &range, error);
+	return status;
 }
 
 /* map */

@@ -23,8 +23,11 @@ static void fill_row(struct measured *m, const struct measurement *measurement, 
 	}
 }
 
-enum status measured_init(struct measured *m, const struct measurement *measurement, enum bins bins)
+enum status measured_init(struct measured *m, const struct measurement *measurement, enum bins bins, int threads)
 {
+	*m = (struct measured){.bins = bins};
+	if (measurement->scattered)
+		return interpolant_init(&m->turned, measurement, 180, true, threads);
 	*m = (struct measured){.bins = bins,
 			       .n_phi_d = measurement->n_phi_d,
 			       .value = calloc(measurement_count(measurement), MERL_CHANNELS * sizeof(float))};
@@ -38,6 +41,7 @@ enum status measured_init(struct measured *m, const struct measurement *measurem
 
 void measured_free(struct measured *m)
 {
+	interpolant_free(&m->turned);
 	free(m->value);
 	*m = (struct measured){0};
 }
@@ -65,6 +69,10 @@ static struct bracket bracket_around(double at, int n)
 
 void measured_f(const struct measured *m, struct vec3 wi, struct vec3 wo, double f[3])
 {
+	if (m->turned.scattered) {
+		interpolant_f(&m->turned, wi, wo, f);
+		return;
+	}
 	f[0] = f[1] = f[2] = 0;
 	if (!(wi.z > 0 && wo.z > 0))
 		return;

@@ -23,22 +23,32 @@ static const struct cook_torrance *best_of(const struct pictures_model *model, i
 	return model[best].model;
 }
 
+static bool any_has_axes(const struct pictures_model *model, int n)
+{
+	bool any = false;
+	for (int i = 0; i < n; i++)
+		any |= model[i].model->ndf.sigma_x != model[i].model->ndf.sigma_y;
+	return any;
+}
+
 enum status pictures_render(const struct measurement *measurement, enum bins bins, const struct pictures_model *model,
 			    int n, enum sampling sampling, const struct environment *environment,
 			    const struct sphere_options *options, struct pictures *p)
 {
 	struct measured measured;
+	struct sphere_options sphere = *options;
+	sphere.tangents = measurement_turns(measurement) || any_has_axes(model, n);
 	*p = (struct pictures){
 		.n = n, .sphere = calloc((size_t)n, sizeof *p->sphere), .error = calloc((size_t)n, sizeof *p->error)};
 	enum status status = p->sphere && p->error ? STATUS_OK : STATUS_NO_MEMORY;
 	if (status == STATUS_OK)
-		status = measured_init(&measured, measurement, bins);
+		status = measured_init(&measured, measurement, bins, options->threads);
 	if (status == STATUS_OK) {
-		status = render(best_of(model, n), &measured, sampling, environment, options, &p->measured);
+		status = render(best_of(model, n), &measured, sampling, environment, &sphere, &p->measured);
 		measured_free(&measured);
 	}
 	for (int i = 0; i < n && status == STATUS_OK; i++) {
-		status = render(model[i].model, NULL, sampling, environment, options, &p->sphere[i]);
+		status = render(model[i].model, NULL, sampling, environment, &sphere, &p->sphere[i]);
 		if (status == STATUS_OK)
 			status = picture_error_compute(&p->sphere[i], &p->measured, &p->error[i]);
 	}

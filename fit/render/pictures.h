@@ -19,7 +19,8 @@ struct pictures {
 };
 
 /* pictures_render - renders n >= 1 models, and the table with the lobe of the one with the lowest error to sample by,
- * all with the same random numbers. Returns STATUS_OK; STATUS_NO_MEMORY, STATUS_INTERRUPTED with *pictures cleared. */
+ * all with the same random numbers. The measurement is a table, or scattered entries of a sample that turns; of these, and of
+ * models with axes, the spheres have tangents [sphere.h]. Returns STATUS_OK; STATUS_NO_MEMORY, STATUS_INTERRUPTED with *pictures cleared. */
 MUST_CHECK enum status pictures_render(const struct measurement *measurement, enum bins bins,
 				       const struct pictures_model *model, int n, enum sampling sampling,
 				       const struct environment *environment, const struct sphere_options *options,

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/render/sphere.h"
+#include "fit/render/frame.h"
+#include "src/splitmix.h"
 #include <gsl/gsl_qrng.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,19 +12,16 @@ enum { AT_PIXEL = 0, AT_LIGHT = 2, AT_SURFACE = 4, DIMENSIONS = 6 };
 #define MARGIN 0.02
 
 struct scene {
-	const struct surface *surface;
+	const struct surface *surface; /* one of the two */
+	const struct glass *glass;
 	const struct environment *environment;
 	const struct sphere_options *options;
 	uint32_t (*point)[DIMENSIONS]; /* per sample: bits behind the point, before the pixel's scrambling */
 };
 
-/* Splitmix64's mixing of bits. */
 static uint64_t mix(uint64_t x)
 {
-	x += 0x9e3779b97f4a7c15u;
-	x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-	x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-	return x ^ (x >> 31);
+	return splitmix_bits(&x);
 }
 
 /* Bits to be changed in each of a pixel's numbers. All the intervals that the points fill evenly stay so. */
@@ -72,30 +71,6 @@ static enum status fill_points(struct scene *scene, int n)
 	return status;
 }
 
-/* A direction in space as seen from a frame whose z is the normal, and back. */
-struct frame {
-	struct vec3 x, y, z;
-};
-
-/* Materials are isotropic: any x and y will do. */
-static struct frame frame_of(struct vec3 n)
-{
-	const struct vec3 aside = fabs(n.y) < 0.9 ? (struct vec3){0, 1, 0} : (struct vec3){1, 0, 0};
-	const struct vec3 x = vec3_unit(vec3_sub(aside, vec3_scale(n, vec3_dot(aside, n))));
-	const struct vec3 y = {n.y * x.z - n.z * x.y, n.z * x.x - n.x * x.z, n.x * x.y - n.y * x.x};
-	return (struct frame){x, y, n};
-}
-
-static struct vec3 to_frame(const struct frame *frame, struct vec3 w)
-{
-	return (struct vec3){vec3_dot(frame->x, w), vec3_dot(frame->y, w), vec3_dot(frame->z, w)};
-}
-
-static struct vec3 from_frame(const struct frame *frame, struct vec3 w)
-{
-	return vec3_add(vec3_add(vec3_scale(frame->x, w.x), vec3_scale(frame->y, w.y)), vec3_scale(frame->z, w.z));
-}
-
 /* A point of the surface, seen. */
 struct point {
 	struct frame frame;
@@ -112,20 +87,11 @@ static void add_point_lights(const struct scene *scene, const struct point *at, 
 {
 	for (int i = 0; i < scene->environment->n_lights; i++) {
 		const struct light *light = &scene->environment->light[i];
-		const struct vec3 wi = to_frame(&at->frame, light->to);
+		const struct vec3 wi = frame_to(&at->frame, light->to);
 		double f[3];
 		surface_f(scene->surface, &at->view, wi, f);
 		add_light(f, light->irradiance, wi.z, sum);
 	}
-}
-
-/* 1/p times the weight of a sample that was drawn with density p, and could have been with density q. */
-static double weight_of(enum estimator estimator, double p, double q)
-{
-	if (estimator != ESTIMATE_BOTH)
-		return 1 / p;
-	const double ratio = q / p;
-	return 1 / (p * (1 + ratio * ratio));
 }
 
 static void add_map_light(const struct scene *scene, const struct point *at, const double u[DIMENSIONS], double sum[3])
@@ -135,31 +101,38 @@ static void add_map_light(const struct scene *scene, const struct point *at, con
 	double f[3];
 	if (estimator != ESTIMATE_SURFACE) {
 		const struct vec3 to = environment_sample(environment, u[AT_LIGHT], u[AT_LIGHT + 1]);
-		const struct vec3 wi = to_frame(&at->frame, to);
+		const struct vec3 wi = frame_to(&at->frame, to);
 		const double pdf = surface_f(scene->surface, &at->view, wi, f);
 		if (pdf > 0) {
 			const struct arriving light = environment_at(environment, to);
-			add_light(f, light.rgb, wi.z * weight_of(estimator, light.pdf, pdf), sum);
+			add_light(f, light.rgb, wi.z * estimator_weight(estimator, light.pdf, pdf), sum);
 		}
 	}
 	struct vec3 wi;
 	if (estimator != ESTIMATE_LIGHT && surface_sample(scene->surface, &at->view, u + AT_SURFACE, &wi)) {
 		const double pdf = surface_f(scene->surface, &at->view, wi, f);
-		const struct arriving light = environment_at(environment, from_frame(&at->frame, wi));
-		add_light(f, light.rgb, wi.z * weight_of(estimator, pdf, light.pdf), sum);
+		const struct arriving light = environment_at(environment, frame_from(&at->frame, wi));
+		add_light(f, light.rgb, wi.z * estimator_weight(estimator, pdf, light.pdf), sum);
 	}
 }
 
 /* Adds the light that one sample of the pixel sees. Returns whether it sees the sphere at all. */
-static bool add_sample(const struct scene *scene, int x, int y, const double u[DIMENSIONS], double sum[3])
+static bool add_sample(const struct scene *scene, int x, int y, const double u[DIMENSIONS], uint64_t random,
+		       double sum[3])
 {
 	const double radius = scene->options->size * (0.5 - MARGIN), middle = 0.5 * scene->options->size;
 	const double right = (x + u[AT_PIXEL] - middle) / radius, up = (middle - y - u[AT_PIXEL + 1]) / radius;
 	const double z2 = 1 - right * right - up * up;
 	if (z2 < SURFACE_HORIZON * SURFACE_HORIZON)
 		return false;
-	struct point at = {.frame = frame_of((struct vec3){right, up, sqrt(z2)})};
-	at.view = surface_view(scene->surface, to_frame(&at.frame, (struct vec3){0, 0, 1}));
+	const struct vec3 normal = {right, up, sqrt(z2)};
+	if (scene->glass) {
+		glass_light(scene->glass, scene->environment, scene->options->estimator, normal, u + AT_LIGHT, &random,
+			    sum);
+		return true;
+	}
+	struct point at = {.frame = scene->options->tangents ? frame_along_parallels(normal) : frame_of(normal)};
+	at.view = surface_view(scene->surface, frame_to(&at.frame, (struct vec3){0, 0, 1}));
 	add_point_lights(scene, &at, sum);
 	if (scene->environment->map.rgb)
 		add_map_light(scene, &at, u, sum);
@@ -177,7 +150,8 @@ static void render_pixel(const struct scene *scene, int x, int y, struct sphere 
 		double u[DIMENSIONS];
 		for (int d = 0; d < DIMENSIONS; d++)
 			u[d] = 0x1p-32 * (double)(scene->point[i][d] ^ scramble[d]);
-		seen += add_sample(scene, x, y, u, sum);
+		const uint64_t random = mix(((uint64_t)scramble[0] << 32 | scramble[1]) + (uint64_t)i);
+		seen += add_sample(scene, x, y, u, random, sum);
 	}
 	sphere->coverage[x + size * y] = (float)seen / (float)n;
 	for (int c = 0; c < 3; c++)
@@ -203,12 +177,11 @@ static void render_rows(const struct scene *scene, struct sphere *sphere)
 	}
 }
 
-enum status sphere_render(const struct surface *surface, const struct environment *environment,
-			  const struct sphere_options *options, struct sphere *sphere)
+static enum status render(struct scene *scene, struct sphere *sphere)
 {
-	struct scene scene = {.surface = surface, .environment = environment, .options = options};
+	const struct sphere_options *options = scene->options;
 	*sphere = (struct sphere){0};
-	enum status status = fill_points(&scene, options->samples);
+	enum status status = fill_points(scene, options->samples);
 	if (status == STATUS_OK)
 		status = image_alloc(&sphere->light, options->size, options->size);
 	if (status == STATUS_OK) {
@@ -216,13 +189,27 @@ enum status sphere_render(const struct surface *surface, const struct environmen
 		status = sphere->coverage ? STATUS_OK : STATUS_NO_MEMORY;
 	}
 	if (status == STATUS_OK) {
-		render_rows(&scene, sphere);
+		render_rows(scene, sphere);
 		status = cancelled(options) ? STATUS_INTERRUPTED : STATUS_OK;
 	}
-	free(scene.point);
+	free(scene->point);
 	if (status != STATUS_OK)
 		sphere_free(sphere);
 	return status;
+}
+
+enum status sphere_render(const struct surface *surface, const struct environment *environment,
+			  const struct sphere_options *options, struct sphere *sphere)
+{
+	struct scene scene = {.surface = surface, .environment = environment, .options = options};
+	return render(&scene, sphere);
+}
+
+enum status sphere_render_glass(const struct glass *glass, const struct environment *environment,
+				const struct sphere_options *options, struct sphere *sphere)
+{
+	struct scene scene = {.glass = glass, .environment = environment, .options = options};
+	return render(&scene, sphere);
 }
 
 void sphere_free(struct sphere *sphere)

@@ -4,21 +4,17 @@
 #define SPHERE_H
 
 #include "fit/render/environment.h"
+#include "fit/render/estimator.h"
+#include "fit/render/glass.h"
 #include "fit/render/surface.h"
 #include <stdatomic.h>
 #include <stdint.h>
-
-/* How the light of the map is integrated. */
-enum estimator {
-	ESTIMATE_BOTH,    /* light and surface sampled alike, weighted by the power heuristic [Veach and Guibas 1995] */
-	ESTIMATE_LIGHT,   /* one of them alone: the same in the mean, */
-	ESTIMATE_SURFACE, /* noisier */
-};
 
 struct sphere_options {
 	int size;    /* width and height of the picture, pixels */
 	int samples; /* per pixel; each takes a direction from the light and one from the surface */
 	uint64_t seed;
+	bool tangents; /* the surface's x points to the right, along the parallels, y to the upper pole; else anywhere */
 	enum estimator estimator;
 	int threads;               /* change no result */
 	const atomic_bool *cancel; /* stops when it becomes true; may be NULL */
@@ -40,6 +36,9 @@ struct sphere {
  * Returns: STATUS_OK; STATUS_NO_MEMORY, STATUS_INTERRUPTED with *sphere cleared. */
 MUST_CHECK enum status sphere_render(const struct surface *surface, const struct environment *environment,
 				     const struct sphere_options *options, struct sphere *sphere);
+/* sphere_render_glass - the same of a solid sphere of glass, with all that it reflects and refracts inside. */
+MUST_CHECK enum status sphere_render_glass(const struct glass *glass, const struct environment *environment,
+					   const struct sphere_options *options, struct sphere *sphere);
 void sphere_free(struct sphere *sphere);
 
 #endif

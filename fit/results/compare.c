@@ -66,6 +66,8 @@ static enum status name_columns(struct comparison *c, size_t n_rows)
 {
 	int n = 0;
 	c->column[n++] = (struct csv_column){"material", false};
+	if (c->weights)
+		c->column[n++] = (struct csv_column){"weight", false};
 	for (int i = 0; i < c->n_values; i++) {
 		if (i == c->n_ndf)
 			c->column[n++] = (struct csv_column){"winner", false};
@@ -84,13 +86,17 @@ static enum status name_columns(struct comparison *c, size_t n_rows)
 static int material_order(const void *a, const void *b)
 {
 	char *const *row_a = *(char **const *)a, *const *row_b = *(char **const *)b;
-	const int order = strcmp(row_a[RESULT_MATERIAL], row_b[RESULT_MATERIAL]);
+	int order = strcmp(row_a[RESULT_WEIGHT], row_b[RESULT_WEIGHT]);
+	if (!order)
+		order = strcmp(row_a[RESULT_MATERIAL], row_b[RESULT_MATERIAL]);
 	return order ? order : strcmp(row_a[RESULT_PATH], row_b[RESULT_PATH]);
 }
 
 enum status comparison_init(struct comparison *c, struct csv_table *rows, bool pictures, struct error *error)
 {
 	*c = (struct comparison){.pictures = pictures};
+	for (size_t i = 1; i < rows->n_rows; i++)
+		c->weights |= strcmp(rows->row[0][RESULT_WEIGHT], rows->row[i][RESULT_WEIGHT]) != 0;
 	enum status status = collect_ndfs(c, rows, error);
 	if (status != STATUS_OK)
 		return status;
@@ -117,13 +123,15 @@ size_t comparison_material_end(const struct csv_table *rows, size_t start)
 	return end;
 }
 
-/* A line: numbers for the value columns, text for the two others. */
+/* A line: numbers for the value columns, text for the others. */
 static enum status add_line(struct comparison *c, const char *material, const double *number, const char *winner)
 {
 	char text[COMPARE_VALUES_MAX][CSV_NUMBER_SIZE];
-	const char *cell[COMPARE_VALUES_MAX + 2];
+	const char *cell[COMPARE_VALUES_MAX + 3];
 	int n = 0;
 	cell[n++] = material;
+	if (c->weights)
+		cell[n++] = c->weight;
 	for (int i = 0; i < c->n_values; i++) {
 		if (i == c->n_ndf)
 			cell[n++] = winner;
@@ -160,28 +168,6 @@ static double find_relation(const struct comparison *c, const double *error, con
 	return r->above ? 100 * (error[of] / error[over] - 1) : 100 * (1 - error[of] / error[over]);
 }
 
-enum status comparison_add(struct comparison *c, char **const *rows, size_t n, const struct compare_picture *picture)
-{
-	const int first = first_picture(c);
-	double number[COMPARE_VALUES_MAX] = {0};
-	for (int i = 0; i < c->n_values; i++)
-		number[i] = NAN;
-	for (size_t i = 0; i < n; i++) {
-		const int ndf = ndf_index(c, rows[i][RESULT_NDF]);
-		number[ndf] = result_number(rows[i], RESULT_ERROR);
-		if (!c->pictures)
-			continue;
-		number[first + ndf] = picture[i].delta_e;
-		number[first + c->n_ndf + ndf] = picture[i].ssim;
-	}
-	for (int r = 0; r < c->n_relations; r++)
-		number[c->n_ndf + r] = find_relation(c, number, &c->relation[r]);
-	for (int i = 0; i < c->n_values; i++)
-		c->value[i][c->n_materials] = number[i];
-	c->n_materials++;
-	return add_line(c, rows[0][RESULT_MATERIAL], number, find_winner(c, number));
-}
-
 /* Whether the smallest value of a column is the worst: so it is of gains and of SSIM. */
 static bool worst_is_least(const struct comparison *c, int i)
 {
@@ -189,7 +175,8 @@ static bool worst_is_least(const struct comparison *c, int i)
 	return picture >= 0 ? picture >= c->n_ndf : i >= c->n_ndf && !c->relation[i - c->n_ndf].above;
 }
 
-enum status comparison_end(struct comparison *c)
+/* The summary of the lines of one weight, after which those of the next begin. */
+static enum status end_weight(struct comparison *c)
 {
 	enum { MEAN, MEDIAN, WORST, WINS, LINES };
 	static const char *const name[LINES] = {"(mean)", "(median)", "(worst)", "(wins)"};
@@ -210,5 +197,39 @@ enum status comparison_end(struct comparison *c)
 	for (int line = 0; line < LINES; line++)
 		if (add_line(c, name[line], number[line], line == WINS ? ties : "") != STATUS_OK)
 			return STATUS_NO_MEMORY;
+	c->n_materials = 0;
+	c->ties = 0;
+	memset(c->wins, 0, sizeof c->wins);
 	return STATUS_OK;
+}
+
+enum status comparison_add(struct comparison *c, char **const *rows, size_t n, const struct compare_picture *picture)
+{
+	const int first = first_picture(c);
+	double number[COMPARE_VALUES_MAX] = {0};
+	const char *weight = rows[0][RESULT_WEIGHT];
+	if (c->weights && c->weight && strcmp(c->weight, weight) != 0 && end_weight(c) != STATUS_OK)
+		return STATUS_NO_MEMORY;
+	c->weight = weight;
+	for (int i = 0; i < c->n_values; i++)
+		number[i] = NAN;
+	for (size_t i = 0; i < n; i++) {
+		const int ndf = ndf_index(c, rows[i][RESULT_NDF]);
+		number[ndf] = result_number(rows[i], RESULT_ERROR);
+		if (!c->pictures)
+			continue;
+		number[first + ndf] = picture[i].delta_e;
+		number[first + c->n_ndf + ndf] = picture[i].ssim;
+	}
+	for (int r = 0; r < c->n_relations; r++)
+		number[c->n_ndf + r] = find_relation(c, number, &c->relation[r]);
+	for (int i = 0; i < c->n_values; i++)
+		c->value[i][c->n_materials] = number[i];
+	c->n_materials++;
+	return add_line(c, rows[0][RESULT_MATERIAL], number, find_winner(c, number));
+}
+
+enum status comparison_end(struct comparison *c)
+{
+	return end_weight(c);
 }

@@ -27,23 +27,25 @@ struct comparison {
 	int n_relations;
 	struct compare_relation relation[FIT_NDFS_MAX + 2];
 	bool pictures;
-	int n_values; /* value columns */
+	bool weights; /* rows of several weights: a column names that of the line, and each weight has its own summary */
+	const char *weight; /* of the lines added last, borrowed from the rows; NULL: none yet */
+	int n_values;       /* value columns */
 	char name[COMPARE_VALUES_MAX][COMPARE_NAME_SIZE];
-	struct csv_column column[COMPARE_VALUES_MAX + 2];
+	struct csv_column column[COMPARE_VALUES_MAX + 3];
 	double *value[COMPARE_VALUES_MAX]; /* column by column; one value per material, NaN: none */
 	size_t n_materials;
 	int wins[FIT_NDFS_MAX], ties;
 };
 
 /* comparison_init - finds the NDFs of the rows of a result table, which must outlive *c, and from them the columns. The rows
- * get reordered: those of one material and path follow one another.
+ * get reordered: those of one weight, material and path follow one another.
  * pictures: whether there are columns of picture errors.
  * Errors: STATUS_UNSUPPORTED: more than FIT_NDFS_MAX NDFs; STATUS_NO_MEMORY. Call comparison_free() in any case. */
 MUST_CHECK enum status comparison_init(struct comparison *c, struct csv_table *rows, bool pictures,
 				       struct error *error);
 void comparison_free(struct comparison *c);
 
-/* comparison_material_end - the row behind those that have the material and the path of row `start`. */
+/* comparison_material_end - the row behind those that have the weight, the material and the path of row `start`. */
 size_t comparison_material_end(const struct csv_table *rows, size_t start);
 
 /* comparison_add - adds the line of n >= 1 rows of one material. Of several rows of one NDF the last counts.
@@ -54,7 +56,8 @@ size_t comparison_material_end(const struct csv_table *rows, size_t start);
 MUST_CHECK enum status comparison_add(struct comparison *c, char **const *rows, size_t n,
 				      const struct compare_picture *picture);
 
-/* comparison_end - adds mean, median, worst and wins of what was added. Values that are not there are left out; the worst of
+/* comparison_end - adds mean, median, worst and wins of what was added, under the last weight: comparison_add() has added those
+ * of the others when their lines ended. Values that are not there are left out; the worst of
  * gains and of SSIM is the least. To be called once, last. STATUS_NO_MEMORY. */
 MUST_CHECK enum status comparison_end(struct comparison *c);
 

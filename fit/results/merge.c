@@ -16,13 +16,25 @@ static const char *location(char text[LOCATION_SIZE], const struct merge_part *p
 	return text;
 }
 
-/* qsort order: file, NDF, turn. */
+static int weight_order(const struct merge_part *x, const struct merge_part *y)
+{
+	return strcmp(x->cell[RESULT_WEIGHT], y->cell[RESULT_WEIGHT]);
+}
+
+/* Of one file: by weight, then NDF. */
+static int fit_order(const struct merge_part *x, const struct merge_part *y)
+{
+	const int order = weight_order(x, y);
+	return order ? order : strcmp(x->cell[RESULT_NDF], y->cell[RESULT_NDF]);
+}
+
+/* qsort order: file, weight, NDF, turn. */
 static int part_order(const void *a, const void *b)
 {
 	const struct merge_part *x = a, *y = b;
 	int order = strcmp(x->cell[RESULT_PATH], y->cell[RESULT_PATH]);
 	if (!order)
-		order = strcmp(x->cell[RESULT_NDF], y->cell[RESULT_NDF]);
+		order = fit_order(x, y);
 	return order ? order : (x->turn > y->turn) - (x->turn < y->turn);
 }
 
@@ -107,7 +119,7 @@ static enum status other_version(const struct merge_part *part, const struct mer
 			 version, location(there, first), other);
 }
 
-/* All rows were made with the same options by the same version. */
+/* All rows were made with the same options, but for the weight, by the same version. */
 static enum status check_origin(const struct merge *m, struct error *error)
 {
 	const struct merge_part *first = &m->part[0];
@@ -115,7 +127,7 @@ static enum status check_origin(const struct merge *m, struct error *error)
 		const struct merge_part *part = &m->part[i];
 		if (strcmp(part->cell[RESULT_VERSION], first->cell[RESULT_VERSION]))
 			return other_version(part, first, error);
-		if (!result_same_options(part->cell[RESULT_OPTIONS], first->cell[RESULT_OPTIONS]))
+		if (!result_same_but_weight(part->cell, first->cell))
 			return other_options(part, first, error);
 	}
 	return STATUS_OK;
@@ -127,8 +139,8 @@ static enum status check_pair(const struct merge *m, const struct merge_part *a,
 			      struct error *error)
 {
 	char here[LOCATION_SIZE], there[LOCATION_SIZE];
-	*same = !strcmp(a->cell[RESULT_NDF], b->cell[RESULT_NDF]);
-	const bool rivals = *same || (result_one_row_a_file(m->part[0].cell) &&
+	*same = !fit_order(a, b);
+	const bool rivals = *same || (result_one_row_a_file(m->part[0].cell) && !weight_order(a, b) &&
 				      !(result_failed(a->cell) && result_failed(b->cell)));
 	const enum result_column c = rivals ? result_difference(b->cell, a->cell) : RESULT_COLUMNS;
 	if (c < RESULT_COLUMNS)
@@ -176,21 +188,18 @@ static enum status lacks(const struct merge_part *without, const struct merge_pa
 	text_quote(without->cell[RESULT_PATH], path, sizeof path);
 	text_quote(with->cell[RESULT_NDF], ndf, sizeof ndf);
 	return error_set(error, STATUS_FORMAT,
-			 "no row of '%s' for %s, as in %s: another --ndf, or a share that did not end", path, ndf,
-			 location(there, with));
+			 "no row of '%s' for %s, as in %s: another --ndf or --weight, or a share that did not end",
+			 path, ndf, location(there, with));
 }
 
-/* Every file has rows of the same NDFs. */
+/* Every file has rows of the same weights and NDFs. */
 static enum status check_ndfs(const struct merge *m, struct error *error)
 {
 	size_t i = 0, j = next_file(m, 0);
 	while (j < m->n && !result_one_row_a_file(m->part[0].cell)) {
 		const size_t end_i = j, end_j = next_file(m, j), start = j;
 		for (; i < end_i || j < end_j; i++, j++) {
-			const int order = i == end_i ? 1
-					  : j == end_j
-						  ? -1
-						  : strcmp(m->part[i].cell[RESULT_NDF], m->part[j].cell[RESULT_NDF]);
+			const int order = i == end_i ? 1 : j == end_j ? -1 : fit_order(&m->part[i], &m->part[j]);
 			if (order)
 				return order < 0 ? lacks(&m->part[start], &m->part[i], error)
 						 : lacks(&m->part[end_i - 1], &m->part[j], error);

@@ -365,6 +365,34 @@ bool result_same_options(const char *a, const char *b)
 	return length == asked_length(b) && !memcmp(a, b, length);
 }
 
+/* The first occurrence of "weight=NAME" in the options of a row, NAME being that of its column; NULL: there is none. */
+static const char *weight_word(char *const *row)
+{
+	static const char name[] = "weight=";
+	const char *word = strstr(row[RESULT_OPTIONS], name);
+	const size_t length = strlen(row[RESULT_WEIGHT]);
+	const char *value = word ? word + strlen(name) : "";
+	const bool same = word && strcspn(value, " ") == length && !strncmp(value, row[RESULT_WEIGHT], length);
+	return same ? word : NULL;
+}
+
+bool result_same_but_weight(char *const *a, char *const *b)
+{
+	const char *word_a = weight_word(a), *word_b = weight_word(b);
+	const char *options_a = a[RESULT_OPTIONS], *options_b = b[RESULT_OPTIONS];
+	if (!strcmp(a[RESULT_WEIGHT], b[RESULT_WEIGHT]) || !word_a || !word_b)
+		return result_same_options(options_a, options_b);
+	const size_t before = (size_t)(word_a - options_a);
+	return before == (size_t)(word_b - options_b) && !memcmp(options_a, options_b, before) &&
+	       result_same_options(word_a + strcspn(word_a, " "), word_b + strcspn(word_b, " "));
+}
+
+bool result_looks_wrong(char *const *row)
+{
+	return strcmp(row[RESULT_WEIGHT], weight_name(WEIGHT_SOLID_ANGLE)) != 0 && !result_failed(row) &&
+	       result_number(row, RESULT_ERROR_SOLID_ANGLE) > RESULT_LOOKS_WRONG;
+}
+
 bool result_one_row_a_file(char *const *row)
 {
 	return strstr(row[RESULT_OPTIONS], "within=");
@@ -551,7 +579,7 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 
 int result_order(const void *a, const void *b)
 {
-	static const enum result_column key[] = {RESULT_MATERIAL, RESULT_NDF, RESULT_PATH};
+	static const enum result_column key[] = {RESULT_MATERIAL, RESULT_NDF, RESULT_PATH, RESULT_WEIGHT};
 	char *const *const row_a = *(char **const *)a, *const *const row_b = *(char **const *)b;
 	for (size_t k = 0; k < sizeof key / sizeof *key; k++) {
 		const int order = strcmp(row_a[key[k]], row_b[key[k]]);

@@ -220,12 +220,20 @@ bool store_has(const struct store *store, const struct result_source *source, co
 	return false;
 }
 
-void store_drop_stale(struct store *store, const struct result_source *source)
+static bool is_current_for_any(char *const *row, const struct result_source *source, int n)
+{
+	for (int i = 0; i < n; i++)
+		if (is_current(row, &source[i]))
+			return true;
+	return false;
+}
+
+void store_drop_stale(struct store *store, const struct result_source *source, int n)
 {
 	for (size_t i = first_old(store, source->path); i < store->old.n_rows; i++) {
 		if (strcmp(store->old.row[i][RESULT_PATH], source->path))
 			break;
-		store->stale[i] |= store->doubtful[i] || !is_current(store->old.row[i], source);
+		store->stale[i] |= store->doubtful[i] || !is_current_for_any(store->old.row[i], source, n);
 	}
 }
 

@@ -31,8 +31,9 @@ MUST_CHECK enum status store_open(struct store *store, const char *path, bool re
  * are not known), options and version, for the NDF of that name (NULL: for some NDF) that did not fail. Safe from
  * several threads. */
 bool store_has(const struct store *store, const struct result_source *source, const char *ndf);
-/* store_drop_stale - the old rows of source->path for which store_has() does not hold will not be kept. */
-void store_drop_stale(struct store *store, const struct result_source *source);
+/* store_drop_stale - the old rows of a path will not be kept for which store_has() holds with none of these n >= 1 sources,
+ * all of that path. */
+void store_drop_stale(struct store *store, const struct result_source *source, int n);
 
 /* store_begin - writes the header line, if it is not there, as the first row would bring it. */
 MUST_CHECK enum status store_begin(struct store *store, struct error *error);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/search/search.h"
 #include "fit/search/valley.h"
+#include "src/splitmix.h"
 #include <math.h>
 #include <nlopt.h>
 #include <stdlib.h>
@@ -208,7 +209,7 @@ static const struct stage stages[SEARCH_LEVELS] = {
 static bool near(const struct search *s, const struct space_point *a, const struct space_point *b)
 {
 	for (int d = 0; d < s->space.dims; d++)
-		if (fabs(a->x[d] - b->x[d]) >= 0.02 * (s->space.hi[d] - s->space.lo[d]))
+		if (fabs(a->x[d] - b->x[d]) >= 0.01 * (s->space.hi[d] - s->space.lo[d]))
 			return false;
 	return true;
 }
@@ -368,16 +369,6 @@ static enum status finish(struct search *s, struct space_point *point, int count
 	return status;
 }
 
-/* The next number in [0, 1) of the sequence splitmix64 (Steele et al. 2014). */
-static double next_uniform(uint64_t *state)
-{
-	uint64_t z = *state += 0x9e3779b97f4a7c15u;
-
-	z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-	z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-	return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
-}
-
 /* Random points, uniform in the coordinates. They start on the second table, which the scan has not seen: a valley that
  * the coarsest one hides can still be found. */
 static void random_points(const struct search *s, struct space_point point[], int count)
@@ -387,7 +378,7 @@ static void random_points(const struct search *s, struct space_point point[], in
 	for (int n = 0; n < count; n++) {
 		point[n] = (struct space_point){.error = 0};
 		for (int d = 0; d < s->space.dims; d++)
-			point[n].x[d] = s->space.lo[d] + (s->space.hi[d] - s->space.lo[d]) * next_uniform(&state);
+			point[n].x[d] = s->space.lo[d] + (s->space.hi[d] - s->space.lo[d]) * splitmix_uniform(&state);
 	}
 }
 

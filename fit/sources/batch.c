@@ -29,15 +29,24 @@ struct run {
 	size_t next;                  /* the next file to fit */
 	size_t *finished, n_finished; /* files in the order in which they ended */
 	int running;                  /* threads */
-	struct fit_context *context[CONTEXTS];
+	struct fit_context *context[WEIGHT_COUNT][CONTEXTS];
 };
 
 enum status batch_init(struct batch *batch, const struct options *options, const struct files *files)
 {
-	char *text = options_text(options);
-	*batch = (struct batch){.options = options, .options_text = text, .n = files->n};
+	*batch = (struct batch){.options = options,
+				.n = files->n,
+				.n_weights = options->n_weights ? options->n_weights : 1,
+				.weight = {options->fit.criterion.weight}};
 	batch->file = calloc(files->n + 1, sizeof(*batch->file));
-	if (!batch->file || !text) {
+	bool texts = true;
+	for (int w = 0; w < batch->n_weights; w++) {
+		if (options->n_weights)
+			batch->weight[w] = options->weight[w];
+		batch->options_text[w] = options_text(options, batch->weight[w]);
+		texts &= batch->options_text[w] != NULL;
+	}
+	if (!batch->file || !texts) {
 		report_error("out of memory");
 		batch_free(batch);
 		return STATUS_NO_MEMORY;
@@ -56,26 +65,34 @@ void batch_free(struct batch *batch)
 		trace_free(&batch->file[i].trace);
 	}
 	free(batch->file);
-	free((char *)batch->options_text);
+	for (int w = 0; w < batch->n_weights; w++)
+		free(batch->options_text[w]);
 	*batch = (struct batch){0};
 }
 
-struct result_source batch_source(const struct batch *batch, const struct batch_file *file)
+static struct result_source batch_source(const struct batch *batch, const struct batch_file *file, int weight)
 {
 	return (struct result_source){.path = file->path,
 				      .input = file->unread ? NULL : file->input,
-				      .options = batch->options_text,
+				      .options = batch->options_text[weight],
 				      .suspects = file->words};
 }
 
-/* The context for this kind of table, made by the first thread that needs it. */
-static enum status get_context(struct run *run, int n_phi_d, const struct fit_context **context)
+void batch_sources(const struct batch *batch, const struct batch_file *file, struct result_source source[WEIGHT_COUNT])
 {
-	struct fit_context **shared = &run->context[n_phi_d / CONTEXT_PHI];
+	for (int w = 0; w < batch->n_weights; w++)
+		source[w] = batch_source(batch, file, w);
+}
+
+/* The context for this weight and kind of table, made by the first thread that needs it. */
+static enum status get_context(struct run *run, int n_phi_d, const struct fit_options *fit,
+			       const struct fit_context **context)
+{
+	struct fit_context **shared = &run->context[fit->criterion.weight][n_phi_d / CONTEXT_PHI];
 	enum status status = STATUS_OK;
 	pthread_mutex_lock(&run->lock);
 	if (!*shared)
-		status = fit_context_new(shared, n_phi_d, &run->batch->options->fit);
+		status = fit_context_new(shared, n_phi_d, fit);
 	*context = *shared;
 	pthread_mutex_unlock(&run->lock);
 	return status;
@@ -136,15 +153,16 @@ static enum status fit_within(const struct fit_context *context, const struct me
 	return error_set(error, STATUS_NO_MEMORY, "out of memory");
 }
 
-static enum status fit_samples(struct run *run, struct batch_file *file, const struct measurement *measurement,
+/* Fits what *fit asks for under weight w. */
+static enum status fit_samples(struct run *run, struct batch_file *file, const struct measurement *measurement, int w,
 			       struct fit_options *fit)
 {
 	const struct options *options = run->batch->options;
-	struct result_source source = batch_source(run->batch, file);
+	struct result_source source = batch_source(run->batch, file, w);
 	const struct fit_context *context;
 	struct fit_result result[FIT_NDFS_MAX];
 	char *text = NULL;
-	enum status status = get_context(run, measurement->n_phi_d, &context);
+	enum status status = get_context(run, measurement->n_phi_d, fit, &context);
 	if (status != STATUS_OK)
 		return error_set(&file->error, status, "%s", status_str(status));
 	if (!isnan(options->within))
@@ -162,31 +180,78 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 	return status;
 }
 
+/* The fit of a file under weight w, without the NDFs that the store has. */
+static struct fit_options options_under(const struct run *run, const struct batch_file *file, int w)
+{
+	struct fit_options fit = run->batch->options->fit;
+	const struct result_source source = batch_source(run->batch, file, w);
+	fit.criterion.weight = run->batch->weight[w];
+	fit.threads = run->threads_per_fit;
+	if (run->batch->store)
+		drop_known(run->batch, &source, &fit);
+	return fit;
+}
+
+/* What looks wrong with a file is found where there is something to fit. */
+static enum status look_at(const struct run *run, struct batch_file *file, const struct measurement *measurement)
+{
+	const struct options *options = run->batch->options;
+	const enum status status = suspects_find(measurement, &options->fit.criterion, &file->suspects);
+	if (status != STATUS_OK)
+		return error_set(&file->error, status, "%s", status_str(status));
+	suspects_words(&file->suspects, file->words);
+	measurement_left_out(measurement, LEFT_OUT_VALUES, options->gamut == GAMUT_MASK, file->left_out);
+	return STATUS_OK;
+}
+
+/* Fits a file that has been read under each weight, as far as the store has no rows. */
+static enum status fit_measurement(struct run *run, struct batch_file *file, const struct measurement *measurement)
+{
+	const struct batch *batch = run->batch;
+	enum status status = STATUS_OK;
+	file->kept = true;
+	for (int w = 0; w < batch->n_weights && status == STATUS_OK; w++) {
+		struct fit_options fit = options_under(run, file, w);
+		if (fit.n_ndf == 0)
+			continue;
+		if (file->kept)
+			status = look_at(run, file, measurement);
+		file->kept = false;
+		if (status != STATUS_OK)
+			break;
+		if (batch->options->trace) {
+			fit.trace = trace_note;
+			fit.trace_data = &file->trace;
+		}
+		status = fit_samples(run, file, measurement, w, &fit);
+	}
+	return status;
+}
+
+/* Rows that say why there is no fit. A disk that is unavailable for a while must not replace earlier fits. */
+static void add_failures(const struct run *run, struct batch_file *file)
+{
+	enum status status = STATUS_OK;
+	csv_table_free(&file->rows);
+	for (int w = 0; w < run->batch->n_weights && status == STATUS_OK; w++) {
+		const struct fit_options fit = options_under(run, file, w);
+		const struct result_source source = batch_source(run->batch, file, w);
+		status = result_add_failure(&file->rows, &source, &fit, file->error.text);
+	}
+	if (status != STATUS_OK)
+		csv_table_free(&file->rows); /* no memory for a row; the message is still reported */
+}
+
 /* Reads and fits one file. Returns STATUS_INTERRUPTED or, with everything in *file, STATUS_OK. */
 static enum status process(struct run *run, struct batch_file *file)
 {
-	struct fit_options fit = run->batch->options->fit;
 	struct measurement measurement;
-	fit.threads = run->threads_per_fit;
-	if (run->batch->options->trace) {
-		fit.trace = trace_note;
-		fit.trace_data = &file->trace;
-	}
-	const struct read_options reading = options_reading(run->batch->options, fit.threads);
+	const struct read_options reading = options_reading(run->batch->options, run->threads_per_fit);
 	enum status status = measurement_read(file->path, &reading, &measurement, &file->error);
 	file->unread = status == STATUS_IO || status == STATUS_NO_MEMORY;
 	if (status == STATUS_OK) {
 		result_input(file->input, &measurement);
-		const struct result_source source = batch_source(run->batch, file);
-		if (run->batch->store)
-			drop_known(run->batch, &source, &fit);
-		file->kept = fit.n_ndf == 0;
-		if (fit.n_ndf > 0) {
-			suspects_find(&measurement, &fit.criterion, &file->suspects);
-			suspects_words(&file->suspects, file->words);
-			measurement_left_out(&measurement, reading.gamut == GAMUT_MASK, file->left_out);
-			status = fit_samples(run, file, &measurement, &fit);
-		}
+		status = fit_measurement(run, file, &measurement);
 		measurement_free(&measurement);
 		if (status != STATUS_OK && status != STATUS_INTERRUPTED) {
 			char name[TEXT_QUOTE_SIZE];
@@ -198,15 +263,8 @@ static enum status process(struct run *run, struct batch_file *file)
 	if (status == STATUS_INTERRUPTED)
 		return status;
 	file->failed = status != STATUS_OK;
-	if (file->failed) {
-		const struct result_source source = batch_source(run->batch, file);
-		csv_table_free(&file->rows);
-		/* A disk that is unavailable for a while must not replace earlier fits. */
-		if (file->unread && run->batch->store)
-			drop_known(run->batch, &source, &fit);
-		if (result_add_failure(&file->rows, &source, &fit, file->error.text) != STATUS_OK)
-			csv_table_free(&file->rows); /* no memory for a row; the message is still reported */
-	}
+	if (file->failed)
+		add_failures(run, file);
 	return STATUS_OK;
 }
 
@@ -336,8 +394,8 @@ int batch_run(struct batch *batch)
 		report_error("cannot start a thread");
 	for (int i = 0; i < started; i++)
 		pthread_join(thread[i], NULL);
-	for (int i = 0; i < CONTEXTS; i++)
-		fit_context_free(run.context[i]);
+	for (int i = 0; i < WEIGHT_COUNT * CONTEXTS; i++)
+		fit_context_free(run.context[i / CONTEXTS][i % CONTEXTS]);
 	free(run.finished);
 	free(thread);
 	if (!stopped && *batch->options->cancel)

@@ -27,8 +27,10 @@ struct batch_file {
 
 struct batch {
 	const struct options *options;
-	const char *options_text;  /* as in the rows */
-	const struct store *store; /* rows that need not be made again; may be NULL */
+	int n_weights; /* each file is fitted under each of them */
+	enum weight weight[WEIGHT_COUNT];
+	char *options_text[WEIGHT_COUNT]; /* of each weight, as in the rows */
+	const struct store *store;        /* rows that need not be made again; may be NULL */
 	struct batch_file *file;
 	size_t n;
 	/* Called in the thread of batch_run, once per file that is done, in the order in which they end; false stops
@@ -46,7 +48,7 @@ void batch_free(struct batch *batch);
  * EXIT_FAILED (a file failed, done() returned false, no thread could be started), EXIT_INTERRUPTED. */
 int batch_run(struct batch *batch);
 
-/* batch_source - the columns that identify a file in its rows. */
-struct result_source batch_source(const struct batch *batch, const struct batch_file *file);
+/* batch_sources - the columns that identify a file in its rows, for each weight. */
+void batch_sources(const struct batch *batch, const struct batch_file *file, struct result_source source[WEIGHT_COUNT]);
 
 #endif

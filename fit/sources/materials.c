@@ -217,6 +217,11 @@ static int fit_rows(struct csv_table *rows, const struct options *options)
 			report_error("out of memory");
 			code = EXIT_FAILED;
 		}
+	bool fitted = false;
+	for (size_t i = 0; i < rows->n_rows; i++)
+		fitted |= !result_failed(rows->row[i]);
+	if (fitted && code != EXIT_INTERRUPTED)
+		options_say_weight(options);
 	batch_free(&batch);
 	files_free(&files);
 	return code == EXIT_DONE && bad ? EXIT_FAILED : code;
@@ -308,14 +313,23 @@ static enum status read_samples(const struct material *material, int threads, st
 	return status;
 }
 
+/* Makes the table; entries that turn are kept beside it. */
+static enum status fill(struct material_data *data, int threads)
+{
+	const enum bins bins = data->fit[0].options.criterion.bins;
+	if (!measurement_turns(&data->measurement))
+		return measurement_fill(&data->measurement, bins, threads);
+	data->turned = data->measurement;
+	return measurement_resample(&data->turned, bins, 180, GAPS_FILLED, threads, &data->measurement, NULL);
+}
+
 enum status material_read(const struct material *material, int threads, struct material_data *data, struct error *error)
 {
 	*data = (struct material_data){.name = material->name};
 	enum status status = read_models(material, threads, data, error);
 	if (status == STATUS_OK)
 		status = read_samples(material, threads, &data->measurement, error);
-	if (status == STATUS_OK &&
-	    measurement_fill(&data->measurement, data->fit[0].options.criterion.bins, threads) != STATUS_OK)
+	if (status == STATUS_OK && fill(data, threads) != STATUS_OK)
 		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
 	if (status != STATUS_OK)
 		material_data_free(data);
@@ -327,6 +341,7 @@ void material_data_free(struct material_data *data)
 	for (int i = 0; i < data->n; i++)
 		result_model_free(&data->fit[i].model, data->fit[i].pwl);
 	measurement_free(&data->measurement);
+	measurement_free(&data->turned);
 	*data = (struct material_data){.n = 0};
 }
 

@@ -44,7 +44,8 @@ struct fitted {
 /* struct material_data - a material in memory. */
 struct material_data {
 	const char *name;
-	struct measurement measurement;
+	struct measurement measurement; /* a table; of scattered entries one with filled gaps */
+	struct measurement turned; /* the entries themselves of a sample that turns (measurement_turns()); else empty */
 	int n;
 	struct fitted fit[FIT_NDFS_MAX];
 };

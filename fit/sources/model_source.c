@@ -3,6 +3,7 @@
 #include "data_readers/measurement_read.h"
 #include "data_readers/text_quote.h"
 #include "fit/export/model_json.h"
+#include "fit/results/contradiction.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -25,10 +26,16 @@ static const char *first_given(const struct options *options, const char *const 
 }
 
 /* Options that control a fit and do not describe a model. */
-static const char *const of_a_fit[] = {"weight", "unbounded", "no-diffuse", "no-specular", "gray", NULL};
+static const char *const of_a_fit[] = {"unbounded", "no-diffuse", "no-specular", "gray", "anisotropic", NULL};
 /* Options that a row determines. */
-static const char *const of_a_model[] = {"kd",  "ks",     "sigma", "gamma",   "ior",       "k",
+static const char *const of_a_model[] = {"kd",  "ks",     "sigma", "angle",   "gamma",     "ior", "k",
 					 "gaf", "lambda", "bins",  "fresnel", "max-theta", NULL};
+
+/* An export fits a model in the place of another: the weight is of that fit. Elsewhere it chooses rows. */
+static bool weighs_substitute(const struct options *options)
+{
+	return options->command == COMMAND_EXPORT;
+}
 
 static bool is_json(const char *path)
 {
@@ -43,17 +50,22 @@ static int check_rows(const struct options *options)
 		ignored = first_given(options, of_a_fit);
 	if (ignored)
 		return options_usage(options->command, "--%s and --from exclude each other", ignored);
-	if (options->row && options_given(options, "ndf"))
-		return options_usage(options->command, "--ndf and --row exclude each other");
-	if (is_json(options->from) && (options->row || options_given(options, "ndf")))
-		return options_usage(options->command, "a model's JSON has neither --row nor --ndf");
+	const bool by_weight = options_given(options, "weight") && !weighs_substitute(options);
+	const bool chosen = options_given(options, "ndf") || by_weight;
+	if (options->row && chosen)
+		return options_usage(options->command, "--%s and --row exclude each other",
+				     options_given(options, "ndf") ? "ndf" : "weight");
+	if (is_json(options->from) && (options->row || chosen))
+		return options_usage(options->command, "a model's JSON has neither --row nor --ndf nor --weight");
 	return -1;
 }
 
 static int check_given(const struct options *options)
 {
 	struct cook_torrance model;
-	const char *ignored = first_given(options, of_a_fit);
+	const char *ignored = options_given(options, "weight") && !weighs_substitute(options)
+				      ? "weight"
+				      : first_given(options, of_a_fit);
 	if (ignored)
 		return options_usage(options->command, "--%s means nothing without a fit, --kd and --ks give the model",
 				     ignored);
@@ -110,6 +122,7 @@ static enum status read_given(const struct options *options, const char *materia
 	struct source_model *model = add(source, options, material);
 	if (!model)
 		return no_memory(error);
+	model->fit.criterion.weight = WEIGHT_NONE; /* nothing was fitted */
 	return options_model(options, &model->model) < 0
 		       ? STATUS_OK
 		       : error_set(error, STATUS_DOMAIN, "the options describe no model");
@@ -120,6 +133,9 @@ static bool wanted(const struct options *options, char *const *row, size_t i, co
 	if (options->row)
 		return i + 1 == (size_t)options->row;
 	if ((material && strcmp(row[RESULT_MATERIAL], material) != 0) || result_failed(row))
+		return false;
+	if (options_given(options, "weight") && !weighs_substitute(options) &&
+	    strcmp(row[RESULT_WEIGHT], weight_name(options->fit.criterion.weight)) != 0)
 		return false;
 	if (!options_given(options, "ndf"))
 		return true;
@@ -160,11 +176,29 @@ static enum status no_row(const struct options *options, const char *material, s
 			 wanted_name);
 }
 
+/* The rows of --from. Which of two that contradict each other is meant, only --row can say. */
+static enum status read_from(const struct options *options, struct csv_table *rows, struct error *error)
+{
+	*rows = csv_table_make(result_columns, RESULT_COLUMNS);
+	const enum status status = csv_table_read(rows, options->from, RESULT_SAMPLES, NULL, error);
+	return status != STATUS_OK || options->row ? status : contradiction_check(rows, options->from, error);
+}
+
+enum status model_source_check_rows(const struct options *options, struct error *error)
+{
+	struct csv_table rows;
+	if (model_source_kind(options) != SOURCE_ROWS || is_json(options->from))
+		return STATUS_OK;
+	const enum status status = read_from(options, &rows, error);
+	csv_table_free(&rows);
+	return status;
+}
+
 static enum status read_rows(const struct options *options, const char *material, struct model_source *source,
 			     struct error *error)
 {
-	struct csv_table rows = csv_table_make(result_columns, RESULT_COLUMNS);
-	enum status status = csv_table_read(&rows, options->from, RESULT_SAMPLES, NULL, error);
+	struct csv_table rows;
+	enum status status = read_from(options, &rows, error);
 	for (size_t i = 0; i < rows.n_rows && status == STATUS_OK; i++)
 		if (wanted(options, rows.row[i], i, material))
 			status = add_row(options, rows.row[i], i + 1, source, error);

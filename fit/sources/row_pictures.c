@@ -89,7 +89,7 @@ static enum status render(const struct models *m, char **const *rows, const stru
 	enum status status = read_samples(m, rows, options, &measurement, error);
 	if (status != STATUS_OK)
 		return status;
-	status = measurement_fill(&measurement, m->bins, options->threads);
+	status = measurement_fill_isotropic(&measurement, m->bins, options->threads);
 	if (status == STATUS_OK)
 		status = pictures_render(&measurement, m->bins, m->shown, m->n, SAMPLING_VISIBLE, light, &sphere,
 					 pictures);

@@ -37,16 +37,20 @@ static void find(struct shown_columns *columns, const struct shown_models *shown
 	bool used[SHOWN_MAX] = {false};
 	for (int i = 0; i < shown->n; i++) {
 		const char *ndf = ndf_name(shown->model[i]->model.ndf.class);
+		const enum weight weight = shown->model[i]->fit.criterion.weight;
 		int c = 0;
-		while (c < columns->n && (used[c] || strcmp(columns->ndf[c], ndf) != 0))
+		while (c < columns->n && (used[c] || columns->weight[c] != weight || strcmp(columns->ndf[c], ndf) != 0))
 			c++;
 		column[i] = c;
 		if (c == columns->n && (!grow || c == SHOWN_MAX)) {
 			column[i] = -1;
 			continue;
 		}
-		if (c == columns->n)
+		if (c == columns->n) {
+			columns->weight[c] = weight;
+			columns->weights |= weight != columns->weight[0];
 			columns->ndf[columns->n++] = ndf;
+		}
 		used[c] = true;
 	}
 }
@@ -62,10 +66,18 @@ enum status shown_columns_plan(struct shown_columns *columns, const struct optio
 {
 	*columns = (struct shown_columns){.n = 0};
 	if (model_source_kind(options) != SOURCE_ROWS) {
-		for (int i = 0; i < options->fit.n_ndf; i++)
+		for (int i = 0; i < options->fit.n_ndf; i++) {
+			/* Given parameters have no weight: model_source_read(). */
+			columns->weight[i] =
+				model_source_kind(options) == SOURCE_FIT ? options->fit.criterion.weight : WEIGHT_NONE;
 			columns->ndf[columns->n++] = ndf_name(options->fit.ndf[i]);
+		}
 		return STATUS_OK;
 	}
+	/* What is wrong with the table as a whole is told once. */
+	const enum status whole = model_source_check_rows(options, error);
+	if (whole != STATUS_OK)
+		return whole;
 	for (size_t i = 0; i < files->n; i++) {
 		struct model_source source;
 		struct shown_models shown;

@@ -20,18 +20,21 @@ struct shown_models {
 MUST_CHECK enum status shown_models_choose(const struct model_source *source, const char *path, bool by_path,
 					   struct shown_models *shown, struct error *error);
 
-/* struct shown_columns - the NDF of each column of models. An NDF has as many columns as a material has models of it. */
+/* struct shown_columns - the NDF and the weight of each column of models. They have as many columns as a material has models
+ * of them. */
 struct shown_columns {
 	int n;
+	bool weights; /* of several weights */
 	const char *ndf[SHOWN_MAX];
+	enum weight weight[SHOWN_MAX];
 };
 
-/* shown_columns_find - the column of each model: the first of its NDF that no model before it has; -1: there is none. */
+/* shown_columns_find - the column of each model: the first of its NDF and weight that no model before it has; -1: there is none. */
 void shown_columns_find(const struct shown_columns *columns, const struct shown_models *shown, int column[SHOWN_MAX]);
 
 /* shown_columns_plan - the columns for all models of the files: those of the options' NDFs, or what the rows of --from need.
- * Rows are read beforehand for that. What is wrong with them is left to be reported later, unless memory ran out, which may
- * pass: STATUS_NO_MEMORY. by_path: see shown_models_choose(). */
+ * Rows are read beforehand for that. What is wrong with one of them is left to be reported later, unless memory ran out, which
+ * may pass: STATUS_NO_MEMORY. Errors of the table as a whole: see model_source_check_rows(). by_path: see shown_models_choose(). */
 MUST_CHECK enum status shown_columns_plan(struct shown_columns *columns, const struct options *options,
 					  const struct files *files, bool by_path, struct error *error);
 
