@@ -4,7 +4,7 @@
 #include <complex.h>
 #include <math.h>
 
-static const char *const names[FRESNEL_COUNT] = {"dielectric", "schlick", "conductor", "none"};
+static const char *const names[FRESNEL_COUNT] = {"dielectric", "schlick", "conductor", "none", "f82"};
 
 const char *fresnel_name(enum fresnel fresnel)
 {

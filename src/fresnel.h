@@ -13,12 +13,11 @@ enum fresnel {
 	FRESNEL_SCHLICK,    /* F0 + (1 - F0)(1 - cos_d)^5 with F0 = ((n-1)/(n+1))^2 */
 	FRESNEL_CONDUCTOR,  /* exact, complex index n + i k */
 	FRESNEL_NONE,       /* 1 */
-	FRESNEL_COUNT,      /* of those that have a name */
-	FRESNEL_F82 =
-		FRESNEL_COUNT /* three reflectances, see fresnel_f82(): not a function of n and k. A model may have it, no fit yet */
+	FRESNEL_F82,        /* three reflectances, see fresnel_f82(): not a function of n and k */
+	FRESNEL_COUNT
 };
 
-/* fresnel_name - "dielectric", "schlick", "conductor", "none"; "unknown" for any other value. */
+/* fresnel_name - "dielectric", "schlick", "conductor", "none", "f82"; "unknown" for any other value. */
 const char *fresnel_name(enum fresnel fresnel);
 /* fresnel_find - the form called `name`. Returns STATUS_DOMAIN, *fresnel untouched, when there is none. */
 MUST_CHECK enum status fresnel_find(const char *name, enum fresnel *fresnel);

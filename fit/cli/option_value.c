@@ -100,6 +100,14 @@ const struct option_spec option_specs[] = {
 	 AT(fit.criterion.zero_is_missing), 0, 0},
 	{"unbounded", 0, KIND_ON, SEARCHES | SOURCES, RECORDED, NULL, "kd and ks may exceed 1", AT(fit.unbounded), 0,
 	 0},
+	{"diffuse", 0, KIND_DIFFUSE, SEARCHES | SOURCES, RECORDED_GIVEN, "NAME",
+	 "the diffuse term: Lambert's alone, or with one of grazing directions beside it, as Burley's has",
+	 AT(fit.grazing), 0, 0},
+	{"exponent", 0, KIND_NUMBER, SEARCHES, RECORDED_GIVEN, "P", "with --diffuse burley: fix its exponent (Burley: 5)",
+	 AT(fit.grazing_exponent), FIT_GRAZING_MIN, FIT_GRAZING_MAX},
+	{"lobes", 0, KIND_INT, SEARCHES | SOURCES, RECORDED_GIVEN, "1|2",
+	 "specular lobes: 2 has a second one of the same NDF and index, with ks, sigma and gamma of its own",
+	 AT(fit.lobes), 1, 2},
 	{"no-diffuse", 0, KIND_OFF, SEARCHES | SOURCES, RECORDED, NULL, "kd = 0", AT(fit.diffuse), 0, 0},
 	{"no-specular", 0, KIND_OFF, SEARCHES | SOURCES, RECORDED, NULL, "ks = 0", AT(fit.specular), 0, 0},
 	{"gray", 0, KIND_ON, SEARCHES | SOURCES, RECORDED, NULL, "one kd and one ks for the three channels",
@@ -220,6 +228,8 @@ const struct option_spec option_specs[] = {
 _Static_assert(sizeof option_specs / sizeof *option_specs <= OPTIONS_MAX,
 	       "struct options.given has an entry per option");
 
+static const char *const diffuse_name[] = {"lambert", "burley"};
+
 const char *option_choice(enum option_kind kind, int i)
 {
 	switch (kind) {
@@ -231,6 +241,8 @@ const char *option_choice(enum option_kind kind, int i)
 		return i < LAMBDA_FORM_COUNT ? lambda_form_name((enum lambda_form)i) : NULL;
 	case KIND_FRESNEL:
 		return i < FRESNEL_COUNT ? fresnel_name((enum fresnel)i) : NULL;
+	case KIND_DIFFUSE:
+		return i < 2 ? diffuse_name[i] : NULL;
 	case KIND_WEIGHT:
 	case KIND_WEIGHTS:
 		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
@@ -263,6 +275,9 @@ static enum status choice_find(enum option_kind kind, const char *text, void *va
 		return lambda_form_find(text, value);
 	case KIND_FRESNEL:
 		return fresnel_find(text, value);
+	case KIND_DIFFUSE:
+		*(bool *)value = !strcmp(text, diffuse_name[1]);
+		return *(bool *)value || !strcmp(text, diffuse_name[0]) ? STATUS_OK : STATUS_DOMAIN;
 	case KIND_WEIGHT:
 		return weight_find(text, value);
 	case KIND_QUANTITY:
@@ -592,6 +607,9 @@ void option_write(FILE *file, const struct options *options, const struct option
 		break;
 	case KIND_FRESNEL:
 		fputs(fresnel_name(*(const enum fresnel *)value), file);
+		break;
+	case KIND_DIFFUSE:
+		fputs(diffuse_name[*(const bool *)value], file);
 		break;
 	case KIND_WEIGHT:
 		fputs(weight_name(*(const enum weight *)value), file);

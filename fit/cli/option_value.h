@@ -25,6 +25,7 @@ enum option_kind {
 	KIND_GAF,
 	KIND_LAMBDA,
 	KIND_FRESNEL,
+	KIND_DIFFUSE, /* bool: whether burley, not lambert */
 	KIND_WEIGHT,
 	KIND_WEIGHTS, /* several of them, separated by commas: weight and n_weights; the first is fit.criterion.weight */
 	KIND_BINS,
