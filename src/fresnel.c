@@ -115,6 +115,7 @@ double fresnel_F(enum fresnel fresnel, double cos_d, double n, double k)
 		return fresnel_conductor(cos_d, n, k);
 	case FRESNEL_NONE:
 	case FRESNEL_F82:
+	case FRESNEL_COUNT:
 		break;
 	}
 	return 1.0;

@@ -119,7 +119,8 @@ static unsigned bounds_of(const struct fit_result *r, const struct fit_options *
 	for (int c = 0; c < MERL_CHANNELS; c++) {
 		if (o->diffuse && (m->kd[c] <= 0 || m->kd[c] >= objective_upper_bound(o, false)))
 			bits |= (unsigned)BOUND_KD_R << c;
-		if (o->specular && o->fresnel != FRESNEL_F82 && (m->ks[c] <= 0 || m->ks[c] >= objective_upper_bound(o, true)))
+		if (o->specular && o->fresnel != FRESNEL_F82 &&
+		    (m->ks[c] <= 0 || m->ks[c] >= objective_upper_bound(o, true)))
 			bits |= (unsigned)BOUND_KS_R << c;
 	}
 	return bits;
@@ -154,6 +155,25 @@ static enum status result_with_ndf(const struct run *run, const struct found *fo
 	return STATUS_OK;
 }
 
+/* The sharper lobe comes first, and one lobe is the first. */
+static void order_lobes(struct cook_torrance *m)
+{
+	const bool has_first = m->ks[0] > 0 || m->ks[1] > 0 || m->ks[2] > 0;
+
+	if (!cook_torrance_has_second(m) || (has_first && m->ndf.sigma_x <= m->second.sigma_x))
+		return;
+	const struct ndf ndf = m->ndf;
+
+	m->ndf = m->second;
+	m->second = ndf;
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		const double ks = m->ks[c];
+
+		m->ks[c] = m->ks_second[c];
+		m->ks_second[c] = ks;
+	}
+}
+
 static enum status result_of(const struct run *run, const struct ndf_class *class, const struct found *found,
 			     struct fit_result *r)
 {
@@ -173,7 +193,11 @@ static enum status result_of(const struct run *run, const struct ndf_class *clas
 		r->model.ndf.sigma_y = run->options->sigma_y;
 		status = ndf_turn(&r->model.ndf, found->shape.angle);
 	}
-	return status == STATUS_OK ? result_with_ndf(run, found, r) : status;
+	if (status == STATUS_OK)
+		status = result_with_ndf(run, found, r);
+	if (status == STATUS_OK)
+		order_lobes(&r->model);
+	return status;
 }
 
 /* Nested distributions: at these values of gamma a class is a simpler one, of the same sigma. */
@@ -566,7 +590,8 @@ static void take_simpler(const struct run *run, struct fit_result *r, const stru
 	if (simpler->error >= r->error)
 		return;
 	/* Schlick's term in the words of the three reflectances. */
-	for (int c = 0; c < MERL_CHANNELS && run->options->fresnel == FRESNEL_F82 && m->fresnel == FRESNEL_SCHLICK; c++) {
+	for (int c = 0; c < MERL_CHANNELS && run->options->fresnel == FRESNEL_F82 && m->fresnel == FRESNEL_SCHLICK;
+	     c++) {
 		m->reflectance[c][0] = m->ks[c] * fresnel_schlick(1, m->n);
 		m->reflectance[c][1] = m->ks[c] * fresnel_schlick(1.0 / 7, m->n);
 		m->reflectance[c][2] = m->ks[c];

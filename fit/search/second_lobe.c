@@ -4,7 +4,8 @@
 #include <stdlib.h>
 
 static const double factors[] = {0.5, 0.75, 1, 1.5, 2.5};
-static const double sigmas[] = {5e-4, 1.2e-3, 2.5e-3, 5e-3, 9e-3, 0.015, 0.025, 0.04, 0.06, 0.09, 0.14, 0.2, 0.3, 0.45, 0.7, 1.1, 2};
+static const double sigmas[] = {5e-4, 1.2e-3, 2.5e-3, 5e-3, 9e-3, 0.015, 0.025, 0.04, 0.06,
+				0.09, 0.14,   0.2,    0.3,  0.45, 0.7,   1.1,   2};
 /* Above the least gamma. */
 static const double gammas[] = {0.05, 0.5, 3, 50};
 enum { FACTORS = 5, SIGMAS = 17, GAMMAS = 4, GRID = FACTORS * SIGMAS * GAMMAS };
