@@ -201,12 +201,6 @@ struct balance {
 	int channel; /* -1: the first lobe alone, for ks = 1 */
 };
 
-/* Whether all channels are kd + ks times the same lobe. */
-static bool is_plain(const struct cook_torrance *model)
-{
-	return model->fresnel != FRESNEL_F82 && !cook_torrance_has_second(model) && !cook_torrance_has_grazing(model);
-}
-
 static enum status balance_init(struct balance *balance, const struct cook_torrance *model)
 {
 	balance->model = model;
@@ -251,7 +245,7 @@ enum status energy_albedo(const struct cook_torrance *model, double cos_i, doubl
 	const enum status status = balance_init(&balance, model);
 	if (status != STATUS_OK)
 		return status;
-	if (is_plain(model)) {
+	if (!cook_torrance_is_rich(model)) {
 		whole(model, balance_albedo(&balance, cos_i, TOLERANCE), albedo);
 		return STATUS_OK;
 	}
@@ -325,7 +319,7 @@ enum status energy_albedo_max(const struct cook_torrance *model, double albedo[3
 	const enum status status = balance_init(&balance, model);
 	if (status != STATUS_OK)
 		return status;
-	if (is_plain(model)) {
+	if (!cook_torrance_is_rich(model)) {
 		whole(model, largest(&balance, theta_i), albedo);
 		return STATUS_OK;
 	}

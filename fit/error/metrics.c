@@ -21,12 +21,6 @@ struct row {
 	double c[ROW_MAX], lobe[ROW_MAX], m[MERL_CHANNELS][ROW_MAX], f[MERL_CHANNELS][ROW_MAX];
 };
 
-/* Whether a model is more than a diffuse term and a lobe whose F all channels share. */
-static bool is_rich(const struct cook_torrance *model)
-{
-	return model->fresnel == FRESNEL_F82 || cook_torrance_has_second(model) || cook_torrance_has_grazing(model);
-}
-
 /* Cube root to float precision, in a form that vectorises: a first guess from the exponent, two steps of Halley. */
 static inline float cube_root(float x)
 {
@@ -152,7 +146,7 @@ static void parts_free(struct parts *parts)
 
 static enum status parts_init(struct parts *parts, const struct geometry *g, const struct cook_torrance *model)
 {
-	*parts = (struct parts){.rich = is_rich(model)};
+	*parts = (struct parts){.rich = cook_torrance_is_rich(model)};
 	for (int c = 0; c < MERL_CHANNELS; c++)
 		for (int j = 0; j < MERL_THETA_D; j++)
 			parts->F[c][j] = cook_torrance_F(model, c, g->entries.theta[j].cos_d);
@@ -221,7 +215,7 @@ static void add_sums(struct sums *all, const struct sums *sums)
 /* A scattered entry that takes part is a row of its own; no table is used. */
 static void sum_scattered(const struct scattered *s, const struct cook_torrance *model, size_t n, struct sums *sums)
 {
-	struct row row = {.n = 1, .rich = is_rich(model)};
+	struct row row = {.n = 1, .rich = cook_torrance_is_rich(model)};
 	double f[MERL_CHANNELS];
 
 	row.c[0] = s->wi[n].z * s->wo[n].z;
