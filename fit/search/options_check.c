@@ -122,7 +122,9 @@ static bool keeps_richer_rule(const struct fit_options *o, struct error *error)
 
 	if (!richer)
 		return true;
-	if (term_list_of(o).n == 0)
+	if (o->grazing && !o->diffuse)
+		fault = "a burley term needs a diffuse one";
+	else if (term_list_of(o).n == 0)
 		fault = "too many terms: a second lobe goes without f82";
 	else if (o->algorithm)
 		fault = "f82, a second lobe and a burley term need the default algorithm";
