@@ -206,7 +206,7 @@ static struct surface make_surface(const struct cook_torrance *model, enum sampl
 /* Whether an earlier value of `sampling` has shown this way to sample. */
 static bool is_known(const struct surface *surface, enum sampling sampling)
 {
-	return sampling > SAMPLING_NDF && surface->own;
+	return sampling > SAMPLING_NDF && surface->lobe[0].own;
 }
 
 static void surfaces_reflect_as_their_model(void **state)
