@@ -409,7 +409,7 @@ static void estimators_agree_in_the_mean(void **state)
 		for (int sampling = 0; sampling < SAMPLING_COUNT; sampling++) {
 			struct surface other = make_surface(&model, (enum sampling)sampling);
 			for (int estimator = ESTIMATE_BOTH; estimator <= ESTIMATE_SURFACE; estimator++) {
-				if (sampling > SAMPLING_NDF && (other.own || estimator != ESTIMATE_SURFACE))
+				if (sampling > SAMPLING_NDF && (other.lobe[0].own || estimator != ESTIMATE_SURFACE))
 					continue;
 				double mean, error;
 				char label[64];
