@@ -306,6 +306,9 @@ static struct cook_torrance given(double sigma, enum fresnel fresnel)
 	model.gaf = GAF_CORRELATED;
 	model.fresnel = fresnel;
 	model.k = 3.25;
+	for (int c = 0; c < 3 && fresnel == FRESNEL_F82; c++)
+		memcpy(model.reflectance[c], (double[]){0.2 + 0.1 * c, 0.5 - 0.05 * c, 0.9},
+		       sizeof model.reflectance[c]);
 	return model;
 }
 
@@ -337,8 +340,10 @@ static void nodes_are_the_model(void **state)
 		char arguments[200];
 
 		snprintf(arguments, sizeof arguments, LOBE "--ndf ggx --sigma 0.23 --gaf correlated --fresnel %s %s %s",
-			 fresnel_name(fresnel), fresnel == FRESNEL_NONE ? "" : "--ior 1.61",
-			 fresnel == FRESNEL_CONDUCTOR ? "--k 3.25" : "");
+			 fresnel_name(fresnel), fresnel_has_ior(fresnel) ? "--ior 1.61" : "",
+			 fresnel == FRESNEL_CONDUCTOR ? "--k 3.25"
+			 : fresnel == FRESNEL_F82     ? "--f0 0.2,0.3,0.4 --f82 0.5,0.45,0.4 --f90 0.9"
+						      : "");
 		export_it(arguments);
 		assert_memory_equal(last.out, "<!-- exact: the model itself", 28);
 		expect_nodes(&model);

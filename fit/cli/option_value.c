@@ -103,6 +103,15 @@ const struct option_spec option_specs[] = {
 	 AT(fit.criterion.zero_is_missing), 0, 0},
 	{"unbounded", 0, KIND_ON, SEARCHES | SOURCES, RECORDED, NULL, "kd and ks may exceed 1", AT(fit.unbounded), 0,
 	 0},
+	{"diffuse", 0, KIND_DIFFUSE, SEARCHES | SOURCES, RECORDED_GIVEN, "NAME",
+	 "the diffuse term: Lambert's alone, or with one of grazing directions beside it, as Burley's has",
+	 AT(fit.grazing), 0, 0},
+	{"exponent", 0, KIND_NUMBER, SEARCHES, RECORDED_GIVEN, "P",
+	 "with --diffuse burley: fix its exponent (Burley: 5)", AT(fit.grazing_exponent), FIT_GRAZING_MIN,
+	 FIT_GRAZING_MAX},
+	{"lobes", 0, KIND_INT, SEARCHES | SOURCES, RECORDED_GIVEN, "1|2",
+	 "specular lobes: 2 has a second one of the same NDF and index, with ks, sigma and gamma of its own",
+	 AT(fit.lobes), 1, 2},
 	{"no-diffuse", 0, KIND_OFF, SEARCHES | SOURCES, RECORDED, NULL, "kd = 0", AT(fit.diffuse), 0, 0},
 	{"no-specular", 0, KIND_OFF, SEARCHES | SOURCES, RECORDED, NULL, "ks = 0", AT(fit.specular), 0, 0},
 	{"gray", 0, KIND_ON, SEARCHES | SOURCES, RECORDED, NULL, "one kd and one ks for the three channels",
@@ -162,6 +171,22 @@ const struct option_spec option_specs[] = {
 	 FIT_K_MAX},
 	{"kd", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "diffuse factors", AT(kd), 0, FIT_FACTOR_MAX},
 	{"ks", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "specular factors", AT(ks), 0, FIT_FACTOR_MAX},
+	{"f0", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "with --fresnel f82: F along the normal",
+	 AT(f82[0]), 0, 1},
+	{"f82", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "F where cos theta_d is 1/7, at about 82 degrees",
+	 AT(f82[1]), 0, 1},
+	{"f90", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "F at grazing incidence; 1 if not given",
+	 AT(f82[2]), 0, 1},
+	{"kg", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B",
+	 "factors of a diffuse term of grazing directions, as Burley's has", AT(kg), 0, FIT_FACTOR_MAX},
+	{"exponent", 0, KIND_NUMBER, MODEL | SOURCES, NOT_RECORDED, "P",
+	 "its exponent: given with --kg, 5 if not given, or fixed in a fit with --diffuse burley",
+	 AT(fit.grazing_exponent), FIT_GRAZING_MIN, FIT_GRAZING_MAX},
+	{"ks2", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "factors of a second lobe of the same NDF and F",
+	 AT(ks2), 0, FIT_FACTOR_MAX},
+	{"sigma2", 0, KIND_NUMBER, MODEL | SOURCES, NOT_RECORDED, "S", "its roughness", AT(sigma2), FIT_SIGMA_MIN,
+	 FIT_SIGMA_MAX},
+	{"gamma2", 0, KIND_GAMMA, MODEL | SOURCES, NOT_RECORDED, "G", "its gamma", AT(gamma2), 1e-3, FIT_GAMMA_MAX},
 	{"from", 0, KIND_TEXT, EVAL | SOURCES | NDF | SAMPLE, NOT_RECORDED, "FILE.csv",
 	 "take the model from the row of this material (and --ndf, if given); FILE.json: from a model's JSON", AT(from),
 	 0, 0},
@@ -227,6 +252,8 @@ const struct option_spec option_specs[] = {
 _Static_assert(sizeof option_specs / sizeof *option_specs <= OPTIONS_MAX,
 	       "struct options.given has an entry per option");
 
+static const char *const diffuse_name[] = {"lambert", "burley"};
+
 const char *option_choice(enum option_kind kind, int i)
 {
 	switch (kind) {
@@ -242,6 +269,8 @@ const char *option_choice(enum option_kind kind, int i)
 			       : NULL;
 	case KIND_FRESNEL:
 		return i < FRESNEL_COUNT ? fresnel_name((enum fresnel)i) : NULL;
+	case KIND_DIFFUSE:
+		return i < 2 ? diffuse_name[i] : NULL;
 	case KIND_WEIGHT:
 	case KIND_WEIGHTS:
 		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
@@ -285,6 +314,9 @@ static enum status choice_find(enum option_kind kind, const char *text, void *va
 		return lambda_form_find(text, value);
 	case KIND_FRESNEL:
 		return fresnel_find(text, value);
+	case KIND_DIFFUSE:
+		*(bool *)value = !strcmp(text, diffuse_name[1]);
+		return *(bool *)value || !strcmp(text, diffuse_name[0]) ? STATUS_OK : STATUS_DOMAIN;
 	case KIND_WEIGHT:
 		return weight_find(text, value);
 	case KIND_QUANTITY:
@@ -615,6 +647,9 @@ void option_write(FILE *file, const struct options *options, const struct option
 		break;
 	case KIND_FRESNEL:
 		fputs(fresnel_name(*(const enum fresnel *)value), file);
+		break;
+	case KIND_DIFFUSE:
+		fputs(diffuse_name[*(const bool *)value], file);
 		break;
 	case KIND_WEIGHT:
 		fputs(weight_name(*(const enum weight *)value), file);

@@ -299,6 +299,9 @@ struct options options_default(enum command command)
 		.count = 1000,
 		.ks = {0, 0, 0},
 		.kd = {0, 0, 0},
+		.f82 = {{0, 0, 0}, {0, 0, 0}, {1, 1, 1}},
+		.sigma2 = NAN,
+		.gamma2 = NAN,
 		.environment = "studio",
 		.size = 256,
 		.accuracy = 0.2,
@@ -510,8 +513,11 @@ int options_check_fit(const struct options *options)
 				     isnan(fit->angle) ? "sigma SX,SY" : "angle");
 	if (fit->anisotropic && !isnan(fit->sigma) && isnan(fit->sigma_y))
 		return options_usage(options->command, "--sigma with --anisotropic takes SX,SY");
-	if (fit->fresnel == FRESNEL_NONE && options_given(options, "ior"))
-		return options_usage(options->command, "--ior means nothing with --fresnel none");
+	if (!fresnel_has_ior(fit->fresnel) && options_given(options, "ior"))
+		return options_usage(options->command, "--ior means nothing with --fresnel %s",
+				     fresnel_name(fit->fresnel));
+	if (!fit->grazing && options_given(options, "exponent"))
+		return options_usage(options->command, "--exponent means nothing without --diffuse burley");
 	if (options_given(options, "gamma") && !any_has_gamma(fit))
 		return options_usage(options->command, "--gamma means nothing for these NDFs");
 	if (broken == FIT_RULE_TABULATED ||
@@ -621,10 +627,34 @@ const char *options_given_beside(const struct options *options, const char *cons
 	return NULL;
 }
 
+/* The options of richer models: which of them need which others. */
+static int check_terms(const struct options *options)
+{
+	static const struct {
+		const char *name, *needs;
+	} pair[] = {{"exponent", "kg"}, {"sigma2", "ks2"}, {"gamma2", "ks2"}, {"ks2", "sigma2"}};
+	static const char *const reflectance[F82_PARTS] = {"f0", "f82", "f90"};
+	const enum command command = options->command;
+	const bool f82 = options->fit.fresnel == FRESNEL_F82;
+	for (size_t i = 0; i < sizeof pair / sizeof *pair; i++)
+		if (options_given(options, pair[i].name) && !options_given(options, pair[i].needs))
+			return options_usage(command, "--%s needs --%s", pair[i].name, pair[i].needs);
+	for (int i = 0; i < F82_PARTS; i++)
+		if (!f82 && options_given(options, reflectance[i]))
+			return options_usage(command, "--%s means nothing without --fresnel f82", reflectance[i]);
+	if (f82 && !(options_given(options, "f0") && options_given(options, "f82")))
+		return options_usage(command, "--fresnel f82 needs --f0 and --f82");
+	if (options_given(options, "ks2") && ndf_has_gamma(options->fit.ndf[0]) != options_given(options, "gamma2"))
+		return options_usage(command, "--ndf %s %s", ndf_name(options->fit.ndf[0]),
+				     ndf_has_gamma(options->fit.ndf[0]) ? "needs --gamma2" : "has no --gamma2");
+	return -1;
+}
+
 /* An option for a term that the model does not have. */
 static int check_model(const struct options *options)
 {
-	static const char *const specular[] = {"sigma", "angle", "gamma", "ior", "k", "ndf", "gaf", "fresnel"};
+	static const char *const specular[] = {"sigma",   "angle", "gamma", "ior", "k",   "ndf",    "gaf",
+					       "fresnel", "f0",    "f82",   "f90", "ks2", "sigma2", "gamma2"};
 	const enum command command = options->command;
 	const struct ndf_class *ndf = options->fit.ndf[0];
 	if (options->fit.n_ndf != 1)
@@ -639,13 +669,14 @@ static int check_model(const struct options *options)
 	if (options_given(options, "ks") && ndf_has_gamma(ndf) != options_given(options, "gamma"))
 		return options_usage(command, "--ndf %s %s", ndf_name(ndf),
 				     ndf_has_gamma(ndf) ? "needs --gamma" : "has no --gamma");
-	if (options->fit.fresnel == FRESNEL_NONE && options_given(options, "ior"))
-		return options_usage(command, "--ior means nothing with --fresnel none");
+	if (!fresnel_has_ior(options->fit.fresnel) && options_given(options, "ior"))
+		return options_usage(command, "--ior means nothing with --fresnel %s",
+				     fresnel_name(options->fit.fresnel));
 	if (isnan(options->fit.sigma_y) && options_given(options, "angle"))
 		return options_usage(command, "--angle needs --sigma SX,SY");
 	if (options->fit.fresnel != FRESNEL_CONDUCTOR && options_given(options, "k"))
 		return options_usage(command, "--k means nothing without --fresnel conductor");
-	return -1;
+	return check_terms(options);
 }
 
 int options_model(const struct options *options, struct cook_torrance *model)
@@ -667,7 +698,16 @@ int options_model(const struct options *options, struct cook_torrance *model)
 		shape.stretch = log(sigma / fit->sigma_y);
 		shape.angle = isnan(fit->angle) ? 0 : fit->angle;
 	}
-	if (shape_ndf(&shape, fit->ndf[0], fit->lambda, &model->ndf) != STATUS_OK)
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		for (int i = 0; i < F82_PARTS; i++)
+			model->reflectance[c][i] = options->f82[i][c];
+	memcpy(model->kg, options->kg, sizeof model->kg);
+	model->grazing = isnan(fit->grazing_exponent) ? 5 : fit->grazing_exponent;
+	memcpy(model->ks_second, options->ks2, sizeof model->ks_second);
+	const struct shape second = {.sigma = options->sigma2, .gamma = isnan(options->gamma2) ? 2 : options->gamma2};
+	if (shape_ndf(&shape, fit->ndf[0], fit->lambda, &model->ndf) != STATUS_OK ||
+	    (options_given(options, "ks2") &&
+	     shape_ndf(&second, fit->ndf[0], fit->lambda, &model->second) != STATUS_OK))
 		return options_usage(options->command, "--ndf %s does not allow these parameters",
 				     ndf_name(fit->ndf[0]));
 	return -1;

@@ -31,6 +31,7 @@ struct options {
 	double within; /* percent; NaN: every NDF as it is */
 	/* A model, for eval and synth; its sigma, gamma and ior are those of `fit`. */
 	double kd[3], ks[3], k;
+	double f82[F82_PARTS][3], kg[3], ks2[3], sigma2, gamma2;
 	const char *from; /* the result table that has the model */
 	int row;          /* its row, from 1; 0: the one of this material and NDF */
 	enum export_format format;

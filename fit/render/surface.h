@@ -8,20 +8,27 @@
 #include "src/cook_torrance.h"
 #include "src/sampling.h"
 
+enum { SURFACE_LOBES = 2 };
+
 struct surface {
-	const struct cook_torrance *model; /* borrowed; directions are sampled by its lobe */
+	const struct cook_torrance *model; /* borrowed; directions are sampled by its lobes */
 	const struct measured *measured;   /* borrowed; what light does, instead of the model. NULL: the model */
-	struct sampler sampler;
-	bool own;               /* it draws the model's own normals, whose D is at hand */
-	struct masking masking; /* G1 */
+	struct surface_lobe {
+		const struct ndf *ndf; /* of the model; NULL: it has no such lobe */
+		struct sampler sampler;
+		bool own;               /* it draws the model's own normals, whose D is at hand */
+		struct masking masking; /* G1 */
+	} lobe[SURFACE_LOBES];
 };
 
 /* struct view - what depends on the view direction alone. */
 struct view {
 	struct vec3 wo;
-	double G1;       /* of the model */
-	double G1_exact; /* of the sampler's NDF, if that is the model's own */
-	double specular; /* share of the lobe among the sampled directions; the rest is cosine distributed */
+	struct view_lobe {
+		double G1;       /* of the model */
+		double G1_exact; /* of the sampler's NDF, if that is the model's own */
+		double share;    /* among the sampled directions; the rest is cosine distributed */
+	} lobe[SURFACE_LOBES];
 };
 
 /* surface_init - where the NDF cannot be sampled so (sampler_init()), visible normals are, or else all.
