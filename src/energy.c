@@ -174,14 +174,20 @@ static double lobe_albedo(struct surface *surface, double cos_i, double toleranc
 	return integrate_slopes(&ring, log(surface->median));
 }
 
+/* What a single direction asks for. */
+static enum status check(const struct cook_torrance *model, double cos_i)
+{
+	if (!(cos_i >= 0.0 && cos_i <= 1.0))
+		return STATUS_DOMAIN;
+	return has_axes(&model->ndf) ? STATUS_UNSUPPORTED : STATUS_OK;
+}
+
 enum status energy_lobe(const struct cook_torrance *model, double cos_i, double *albedo)
 {
 	struct surface surface;
-	if (!(cos_i >= 0.0 && cos_i <= 1.0))
-		return STATUS_DOMAIN;
-	if (has_axes(&model->ndf))
-		return STATUS_UNSUPPORTED;
-	const enum status status = surface_init(&surface, model, &model->ndf);
+	enum status status = check(model, cos_i);
+	if (status == STATUS_OK)
+		status = surface_init(&surface, model, &model->ndf);
 	if (status == STATUS_OK)
 		*albedo = lobe_albedo(&surface, cos_i, TOLERANCE);
 	return status;
@@ -238,11 +244,9 @@ static void whole(const struct cook_torrance *model, double lobe, double albedo[
 enum status energy_albedo(const struct cook_torrance *model, double cos_i, double albedo[3])
 {
 	struct balance balance;
-	if (!(cos_i >= 0.0 && cos_i <= 1.0))
-		return STATUS_DOMAIN;
-	if (has_axes(&model->ndf))
-		return STATUS_UNSUPPORTED;
-	const enum status status = balance_init(&balance, model);
+	enum status status = check(model, cos_i);
+	if (status == STATUS_OK)
+		status = balance_init(&balance, model);
 	if (status != STATUS_OK)
 		return status;
 	if (!cook_torrance_is_rich(model)) {

@@ -51,9 +51,20 @@ static double t3_quantile(double u)
 }
 
 /* The paper's rational fit of the same quantile at u = (1 + v)/2. */
+struct t3_fraction {
+	double top, bottom;
+};
+
+static struct t3_fraction t3_fraction(double v)
+{
+	return (struct t3_fraction){v * (0.46341 + v * (-0.73369 + v * 0.27385)),
+				    0.597999 + v * (-1.0 + v * (0.309420 + v * 0.093073))};
+}
+
 static double t3_fit(double v)
 {
-	return v * (0.46341 + v * (-0.73369 + v * 0.27385)) / (0.597999 + v * (-1.0 + v * (0.309420 + v * 0.093073)));
+	const struct t3_fraction fit = t3_fraction(v);
+	return fit.top / fit.bottom;
 }
 
 static double t3_quantile_fit(double u)
@@ -77,11 +88,10 @@ static double t3_fit_ratio(double z)
 			high = v;
 	}
 	const double v = 0.5 * (low + high);
-	const double top = v * (0.46341 + v * (-0.73369 + v * 0.27385));
-	const double bottom = 0.597999 + v * (-1.0 + v * (0.309420 + v * 0.093073));
+	const struct t3_fraction fit = t3_fraction(v);
 	const double top_slope = 0.46341 + v * (-2.0 * 0.73369 + v * 3.0 * 0.27385);
 	const double bottom_slope = -1.0 + v * (2.0 * 0.309420 + v * 3.0 * 0.093073);
-	const double slope = (top_slope - top / bottom * bottom_slope) / bottom; /* dz/dv, v = 2 u - 1 */
+	const double slope = (top_slope - fit.top / fit.bottom * bottom_slope) / fit.bottom; /* dz/dv, v = 2 u - 1 */
 	const double root = 1.0 + z * z;
 	return 0.25 * M_PI * root * root / slope;
 }

@@ -1,33 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Models with more terms than two: known parameters come back, a richer model never loses, rows and JSON bring them back. */
-#include "check.h"
-#include "fit/cli/options.h"
 #include "fit/results/result.h"
-#include "fit/search/fit.h"
 #include "fit/search/options_check.h"
 #include "make_scattered.h"
-#include <unistd.h>
-
-static struct fit_options options_for(const char *ndf)
-{
-	struct fit_options o = fit_options_default();
-
-	o.threads = 2;
-	o.n_ndf = 1;
-	o.ndf[0] = ndf_find(ndf);
-	return o;
-}
+#include "run_fit.h"
 
 static struct fit_result run(const struct measurement *measurement, const struct fit_options *options)
 {
-	struct fit_context *context;
 	struct fit_result result;
-	struct error error = {""};
 
-	assert_int_equal(fit_context_new(&context, measurement->n_phi_d, options), STATUS_OK);
-	if (fit_run(context, measurement, options, &result, &error) != STATUS_OK)
-		fail_msg("%s", error.text);
-	fit_context_free(context);
+	run_fit(measurement, options, &result);
 	return result;
 }
 

@@ -3,6 +3,7 @@
 #include "data_readers/text_quote.h"
 #include "fit/cli/nearest.h"
 #include "fit/results/csv.h"
+#include "src/names.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -294,6 +295,15 @@ const char *option_choice(enum option_kind kind, int i)
 	}
 }
 
+static enum status diffuse_find(const char *text, bool *burley)
+{
+	const int i = names_find(diffuse_name, 2, text);
+	if (i < 0)
+		return STATUS_DOMAIN;
+	*burley = i == 1;
+	return STATUS_OK;
+}
+
 static enum status lambda_form_of_student_t(const char *text, enum lambda_form *form)
 {
 	enum lambda_form found;
@@ -315,8 +325,7 @@ static enum status choice_find(enum option_kind kind, const char *text, void *va
 	case KIND_FRESNEL:
 		return fresnel_find(text, value);
 	case KIND_DIFFUSE:
-		*(bool *)value = !strcmp(text, diffuse_name[1]);
-		return *(bool *)value || !strcmp(text, diffuse_name[0]) ? STATUS_OK : STATUS_DOMAIN;
+		return diffuse_find(text, value);
 	case KIND_WEIGHT:
 		return weight_find(text, value);
 	case KIND_QUANTITY:

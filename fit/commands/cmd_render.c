@@ -167,7 +167,6 @@ static enum status write_picture(const struct render *render, struct error *erro
 }
 
 /* A model alone: the picture is all there is to show. */
-
 static enum status draw_model(struct render *render, const struct source_model *model, const struct sphere *sphere,
 			      struct error *error)
 {

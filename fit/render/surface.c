@@ -113,12 +113,12 @@ static struct half half_of(struct vec3 wi, struct vec3 wo)
 }
 
 /* Adds a lobe to f. Returns the density of its normals per direction wi: d m = d wi / (4 cos_d). */
-static double add_lobe(const struct surface *s, const struct view *view, int l, struct vec3 wi, double f[3])
+static double add_lobe(const struct surface *s, const struct view *view, int l, struct vec3 wi, struct half half,
+		       double f[3])
 {
 	const struct cook_torrance *model = s->model;
 	const struct surface_lobe *lobe = &s->lobe[l];
 	const double *ks = l ? model->ks_second : model->ks;
-	const struct half half = half_of(wi, view->wo);
 	const double D = ndf_D(lobe->ndf, half.m);
 	if (!s->measured && model->fresnel != FRESNEL_F82) {
 		const double value = facets_f(s, view, l, wi, cook_torrance_F(model, 0, half.cos_d) * D);
@@ -135,13 +135,12 @@ static double add_lobe(const struct surface *s, const struct view *view, int l, 
 							   : D * half.m.z / (4 * half.cos_d);
 }
 
-static void diffuse_f(const struct surface *s, const struct view *view, struct vec3 wi, double f[3])
+static void diffuse_f(const struct surface *s, const struct view *view, struct vec3 wi, struct half half, double f[3])
 {
 	const struct cook_torrance *model = s->model;
-	const double grazing =
-		cook_torrance_has_grazing(model)
-			? cook_torrance_grazing(model->grazing, wi.z, view->wo.z, half_of(wi, view->wo).cos_d)
-			: 0;
+	const double grazing = cook_torrance_has_grazing(model)
+				       ? cook_torrance_grazing(model->grazing, wi.z, view->wo.z, half.cos_d)
+				       : 0;
 	for (int c = 0; c < 3; c++)
 		f[c] = model->kd[c] * M_1_PI + model->kg[c] * grazing;
 }
@@ -152,15 +151,16 @@ double surface_f(const struct surface *s, const struct view *view, struct vec3 w
 	f[0] = f[1] = f[2] = 0;
 	if (wi.z < SURFACE_HORIZON)
 		return 0;
+	const struct half half = half_of(wi, view->wo);
 	if (s->measured)
 		measured_f(s->measured, wi, view->wo, f);
 	else
-		diffuse_f(s, view, wi, f);
+		diffuse_f(s, view, wi, half, f);
 	for (int l = 0; l < SURFACE_LOBES; l++) {
 		const double share = view->lobe[l].share;
 		if (!(share > 0))
 			continue;
-		lobes += share * add_lobe(s, view, l, wi, f);
+		lobes += share * add_lobe(s, view, l, wi, half, f);
 		rest -= share;
 	}
 	return lobes + rest * wi.z * M_1_PI;

@@ -574,8 +574,6 @@ static enum status result_ndf(char *const *row, const struct ndf_class *class, s
 	return form == LAMBDA_EXACT ? STATUS_OK : ndf_set_lambda_form(ndf, form);
 }
 
-#define TERM_EXPONENT_MAX 1e3
-
 /* The terms beyond two of a row, RESULT_COLUMNS where they are whole, else the column to blame. */
 static enum result_column result_terms(char *const *row, struct cook_torrance *model, struct fit_options *options)
 {
@@ -583,7 +581,7 @@ static enum result_column result_terms(char *const *row, struct cook_torrance *m
 	options->grazing = *row[RESULT_EXPONENT];
 	options->lobes = *row[RESULT_KS2_R] ? 2 : 1;
 	model->grazing = number_or(row, RESULT_EXPONENT, 0);
-	if (options->grazing && !(model->grazing > 0 && model->grazing <= TERM_EXPONENT_MAX))
+	if (options->grazing && !(model->grazing >= FIT_GRAZING_MIN && model->grazing <= FIT_GRAZING_MAX))
 		return RESULT_EXPONENT;
 	for (enum result_column c = 0; c < 3; c++) {
 		if (!is_factor(row, RESULT_KG_R + c, RESULT_EXPONENT))

@@ -630,7 +630,9 @@ static int richer_starts(const struct run *run, const struct ndf_class *class, c
 	}
 	if (*status != STATUS_OK)
 		return 0;
-	start[0] = start[count - 1].second_sigma > 0 && count > 1 ? start[--count] : start[0];
+	/* The last nested one takes the place of the shape of one lobe where it has two. */
+	if (count > 1 && start[count - 1].second_sigma > 0)
+		start[0] = start[--count];
 	const struct shape one = shape_of(&simpler->model);
 
 	return count + second_lobe_starts(&run->multiresolution, run->options, class, &one, start + count,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/search/second_lobe.h"
+#include "fit/search/grid_starts.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,12 +10,6 @@ static const double sigmas[] = {5e-4, 1.2e-3, 2.5e-3, 5e-3, 9e-3, 0.015, 0.025, 
 /* Above the least gamma. */
 static const double gammas[] = {0.05, 0.5, 3, 50};
 enum { FACTORS = 5, SIGMAS = 17, GAMMAS = 4, GRID = FACTORS * SIGMAS * GAMMAS };
-
-struct candidate {
-	struct shape shape;
-	double error;
-	int index;
-};
 
 static struct shape grid_shape(const struct shape *one, const struct ndf_class *class, int index)
 {
@@ -31,15 +26,6 @@ static struct shape grid_shape(const struct shape *one, const struct ndf_class *
 	return shape;
 }
 
-static int by_error(const void *a, const void *b)
-{
-	const struct candidate *p = a, *q = b;
-
-	if (p->error != q->error)
-		return p->error < q->error ? -1 : 1;
-	return p->index - q->index;
-}
-
 static bool near(const struct shape *a, const struct shape *b)
 {
 	return fabs(log(a->sigma / b->sigma)) < 0.5 && fabs(log(a->second_sigma / b->second_sigma)) < 0.6;
@@ -50,7 +36,7 @@ int second_lobe_starts(const struct multiresolution *multiresolution, const stru
 		       long *evaluations, enum status *status)
 {
 	const int total = ndf_has_gamma(class) ? GRID : FACTORS * SIGMAS;
-	struct candidate *grid = malloc(GRID * sizeof *grid);
+	struct grid_candidate *grid = malloc(GRID * sizeof *grid);
 	int kept = 0;
 
 	*status = grid ? STATUS_OK : STATUS_NO_MEMORY;
@@ -66,7 +52,8 @@ int second_lobe_starts(const struct multiresolution *multiresolution, const stru
 		for (int i = 0; i < total; i++) {
 			struct linear linear;
 
-			grid[i] = (struct candidate){.shape = grid_shape(one, class, i), .error = INFINITY, .index = i};
+			grid[i] = (struct grid_candidate){
+				.shape = grid_shape(one, class, i), .error = INFINITY, .index = i};
 			if (mine != STATUS_OK || fit_cancelled(options))
 				continue;
 			/* Afresh: the result does not depend on the threads. */
@@ -79,16 +66,9 @@ int second_lobe_starts(const struct multiresolution *multiresolution, const stru
 #pragma omp critical
 			*status = mine;
 	}
-	qsort(grid, (size_t)total, sizeof *grid, by_error);
 	*evaluations += total;
-	for (int i = 0; i < total && kept < count && *status == STATUS_OK; i++) {
-		bool repeats = false;
-
-		for (int m = 0; m < kept && !repeats; m++)
-			repeats = near(&grid[i].shape, &start[m]);
-		if (!repeats)
-			start[kept++] = grid[i].shape;
-	}
+	if (*status == STATUS_OK)
+		kept = grid_starts_choose(grid, total, near, start, count);
 	free(grid);
 	return kept;
 }
