@@ -151,7 +151,9 @@ const struct option_spec option_specs[] = {
 	{"starts", 0, KIND_INT, FITS, RECORDED, "N", "more searches, from random shapes", AT(fit.starts), 0, 100000},
 	{"seed", 0, KIND_SEED, SEARCHES, RECORDED, "N", "seed of the random shapes", AT(fit.seed), 0, 0},
 	{"within", 0, KIND_PERCENT, FIT, RECORDED_WITHIN, "P%",
-	 "per material only the simplest model whose error is within P% of the best", AT(within), 0, 1000},
+	 "per material only the simplest model whose error is within P% of the best, from a gray Lambert term to two "
+	 "coloured lobes; --lobes, --diffuse or --fresnel given keeps out what is richer in that",
+	 AT(within), 0, 1000},
 	{"sigma", 0, KIND_SIGMA, MODEL, NOT_RECORDED, "S|SX,SY", "roughness, along both axes if two", AT(fit.sigma),
 	 FIT_SIGMA_MIN, FIT_SIGMA_MAX},
 	{"angle", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "DEG", "azimuth of the axis of SX; 0 if not given",

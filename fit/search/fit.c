@@ -813,28 +813,44 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
 }
 
+enum status fit_samples_of(const struct fit_context *context, const struct measurement *measurement,
+			   const struct fit_options *options, struct multiresolution *multiresolution,
+			   struct error *error)
+{
+	struct sample_set full;
+	enum status status = check_arguments(context, measurement, options, error);
+
+	if (status != STATUS_OK)
+		return status;
+	status = sample_set_init(&full, &context->geometry, measurement, options->threads);
+	if (status == STATUS_NO_DATA)
+		return error_set(error, status, "no entry to fit: expected some valid ones that are not all zero");
+	if (status == STATUS_OK)
+		status = multiresolution_init(multiresolution, &full);
+	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
+}
+
 enum status fit_estimate(const struct fit_context *context, const struct measurement *measurement,
 			 const struct fit_options *options, double *estimate, struct error *error)
 {
 	struct multiresolution multiresolution;
-	struct sample_set full;
-	enum status status = check_arguments(context, measurement, options, error);
+	enum status status = fit_samples_of(context, measurement, options, &multiresolution, error);
 	bool known = true;
 
 	*estimate = INFINITY;
-	if (status == STATUS_OK)
-		status = sample_set_init(&full, &context->geometry, measurement, options->threads);
-	if (status != STATUS_OK)
-		return status;
-	status = multiresolution_init(&multiresolution, &full);
 	if (status != STATUS_OK)
 		return status;
 	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++) {
+		struct space space;
+		struct shape shape;
 		double one;
 
-		status = search_estimate(&multiresolution, options, options->ndf[n], &one);
+		space_init(&space, options, options->ndf[n]);
+		known = known && space.dims > 0;
+		if (space.dims == 0)
+			continue;
+		status = search_estimate(&multiresolution, options, options->ndf[n], NULL, 0, &shape, &one);
 		*estimate = fmin(*estimate, one);
-		known = known && isfinite(one);
 	}
 	if (!known)
 		*estimate = INFINITY;
