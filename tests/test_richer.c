@@ -117,29 +117,39 @@ static void two_lobes_share_the_bound_of_one(void **state)
 	measurement_free(&measurement);
 }
 
-/* Data of another kind than each model: what the simpler one reaches is never lost. */
+/* Data of another kind than each model: what the simpler one reaches is never lost, gray or not. */
 static void a_richer_model_never_loses(void **state)
 {
 	const struct cook_torrance truth = make_model("gtr", 0.2, 1.4, 1.6);
 	struct measurement measurement = make_scattered(&truth, 1500, 0.1, 5);
 
 	(void)state;
-	for (enum kind kind = 0; kind < KINDS; kind++) {
-		struct fit_options o = options_for("ggx");
+	for (int gray = 0; gray < 2; gray++)
+		for (enum kind kind = 0; kind < KINDS; kind++) {
+			struct fit_options o = options_for("ggx");
 
-		if (kind == F82)
-			o.fresnel = FRESNEL_SCHLICK;
-		const double simpler = run(&measurement, &o).error;
+			o.gray = gray;
+			if (kind == F82)
+				o.fresnel = FRESNEL_SCHLICK;
+			const double simpler = run(&measurement, &o).error;
 
-		ask_for(kind, &o);
-		assert_true(run(&measurement, &o).error <= simpler);
-		o.grazing = true;
-		if (kind == BURLEY)
-			o.grazing_exponent = 5;
-		const double with_grazing = run(&measurement, &o).error;
+			ask_for(kind, &o);
+			const struct fit_result r = run(&measurement, &o);
 
-		assert_true(with_grazing <= simpler);
-	}
+			assert_true(r.error <= simpler);
+			for (int c = 1; c < 3 && gray; c++) {
+				assert_true(r.model.kd[c] == r.model.kd[0] && r.model.ks[c] == r.model.ks[0]);
+				assert_true(r.model.kg[c] == r.model.kg[0]);
+				assert_true(r.model.ks_second[c] == r.model.ks_second[0]);
+				for (int i = 0; i < F82_PARTS; i++)
+					assert_true(r.model.reflectance[c][i] == r.model.reflectance[0][i]);
+			}
+			o.grazing = true;
+			o.lobes = kind == F82 ? 1 : 2;
+			if (kind == BURLEY)
+				o.grazing_exponent = 5;
+			assert_true(run(&measurement, &o).error <= (kind == BURLEY ? simpler : r.error));
+		}
 	measurement_free(&measurement);
 }
 

@@ -641,6 +641,25 @@ static int richer_starts(const struct run *run, const struct ndf_class *class, c
 					  SEARCH_GIVEN - count, evaluations, status);
 }
 
+/* Two lobes beside a grazing term hold two lobes without one, too, which the simpler model is not. */
+static enum status fit_without_grazing(const struct run *run, const struct ndf_class *class, struct fit_result *r)
+{
+	struct fit_options options = *run->options;
+	struct memory *fresh = calloc(1, sizeof *fresh);
+	struct run own = *run;
+	enum status status = STATUS_NO_MEMORY;
+
+	options.grazing = false;
+	own.options = &options;
+	if (fresh) {
+		own.minima = fresh->minima;
+		own.isotropic = &fresh->nested;
+		status = fit_class(&own, class, &fresh->nested, r);
+	}
+	free(fresh);
+	return status;
+}
+
 /* A richer model: the simpler one first. With one lobe there is a scan of its own as well. A richer model never loses. */
 static enum status fit_richer(const struct run *run, const struct ndf_class *class,
 			      const struct fit_options *simpler_options, struct nested *nested, struct fit_result *r)
@@ -648,7 +667,8 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 	const bool scans = run->options->lobes < 2;
 	struct memory *fresh = calloc(1, sizeof *fresh);
 	struct run own = *run;
-	struct fit_result simpler;
+	const bool two_ways = run->options->lobes > 1 && run->options->grazing;
+	struct fit_result simpler, other;
 	struct shape start[SEARCH_GIVEN];
 	struct found found;
 	long evaluations = 0;
@@ -669,6 +689,10 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 		status = fit_alone(run, class, r);
 	if (status == STATUS_OK)
 		count = richer_starts(run, class, &simpler, nested, start, &evaluations, &status);
+	if (status == STATUS_OK && two_ways)
+		status = fit_without_grazing(run, class, &other);
+	if (status == STATUS_OK && two_ways && cook_torrance_has_second(&other.model))
+		start[count < SEARCH_GIVEN ? count++ : count - 1] = shape_of(&other.model);
 	if (status == STATUS_OK) {
 		const struct shape known = scans ? shape_of(&r->model) : start[0];
 
@@ -689,6 +713,11 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 	take_simpler(run, r, &simpler);
 	r->evaluations += simpler.evaluations + evaluations;
 	r->passes += simpler.passes;
+	if (two_ways) {
+		take_simpler(run, r, &other);
+		r->evaluations += other.evaluations;
+		r->passes += other.passes;
+	}
 	r->seconds = simpler.seconds + search_clock() - begin;
 	return STATUS_OK;
 }
