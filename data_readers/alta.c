@@ -37,7 +37,7 @@ static void half_difference(const double *x, struct vec3 *wi, struct vec3 *wo)
 	halfdiff_to_dirs((struct halfdiff){x[0], x[1], x[2]}, wi, wo);
 }
 
-/* Angles that are not given are those that ALTA itself takes: phi_d is 0, or 90 degrees for RUSIN_TH_TD, theta_d is 0. */
+/* Angles that are not given are ALTA's own: phi_d is 0, or 90 degrees for RUSIN_TH_TD, theta_d is 0. */
 
 static double angle_of(double cosine)
 {

@@ -31,14 +31,15 @@ struct entry_list {
 
 #define ENTRY_HORIZON 1e-6 /* a direction whose cosine is not above this counts as below the horizon */
 
-/* entry_list_add - adds an entry, or leaves it out and counts it: for a direction that is not finite; for one at or below the horizon; else for a value
- * that is not finite or beyond float; else for one that is negative. If `derived`, the values were computed from a spectrum, and
- * the list's `gamut` says what becomes of a negative one; the entry is counted in n_out_of_gamut in any case. What is too small for a normal float becomes 0. STATUS_NO_MEMORY. */
+/* entry_list_add - adds an entry, or leaves it out and counts it: for a direction that is not finite; for one at or
+ * below the horizon; else for a value that is not finite or beyond float; else for one that is negative. If `derived`,
+ * the values were computed from a spectrum, and the list's `gamut` says what becomes of a negative one; the entry is
+ * counted in n_out_of_gamut in any case. What is too small for a normal float becomes 0. STATUS_NO_MEMORY. */
 MUST_CHECK enum status entry_list_add(struct entry_list *list, const struct entry *entry, bool derived);
 
-/* entry_list_finish - moves the entries and counts into a measurement; estimates the solid angles unless the file has them.
- * The list is empty afterwards in any case. STATUS_NO_DATA: no entry is left; `why` says how many were left out and why.
- * STATUS_NO_MEMORY. *measurement is cleared then. */
+/* entry_list_finish - moves the entries and counts into a measurement; estimates the solid angles unless the file has
+ * them. The list is empty afterwards in any case. STATUS_NO_DATA: no entry is left; `why` says how many were left out
+ * and why. STATUS_NO_MEMORY. *measurement is cleared then. */
 MUST_CHECK enum status entry_list_finish(struct entry_list *list, struct measurement *measurement, struct error *why);
 
 void entry_list_free(struct entry_list *list);

@@ -7,8 +7,8 @@
 
 enum { FOREIGN_FILE_HEAD = 12 }; /* bytes that tell */
 
-/* foreign_file - what a file is that begins with these n bytes, and what to do with it, as in "is compressed by gzip: expand
- * it with gunzip first"; NULL for any other. */
+/* foreign_file - what a file is that begins with these n bytes, and what to do with it, as in "is compressed by gzip:
+ * expand it with gunzip first"; NULL for any other. */
 const char *foreign_file(const void *head, size_t n);
 
 #endif

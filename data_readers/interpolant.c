@@ -30,8 +30,8 @@ struct place {
 	int axis;
 };
 
-/* Of a sample that turns: the half vector in the plane, theta_h by its root as below, and phi_d, which goes round after half a
- * turn, as both orders of wi and wo are one. */
+/* Of a sample that turns: the half vector in the plane, theta_h by its root as below, and phi_d, which goes round after
+ * half a turn, as both orders of wi and wo are one. */
 static void turned_coordinates(struct vec3 wi, struct vec3 wo, float x[TURNED])
 {
 	const struct halfdiff a = halfdiff_from_dirs(wi, wo);

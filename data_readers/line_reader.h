@@ -24,9 +24,9 @@ struct line_reader {
 MUST_CHECK enum status line_reader_open(struct line_reader *reader, const char *path, const char *what,
 					struct error *why);
 
-/* line_reader_next - the next line into *line, terminated, without its end ("\n" or "\r\n"), valid until the next call; NULL
- * at the end of the file. The mark that some programs put before UTF-8 is left out. STATUS_FORMAT: a zero byte, a line that
- * is too long; STATUS_IO. */
+/* line_reader_next - the next line into *line, terminated, without its end ("\n" or "\r\n"), valid until the next call;
+ * NULL at the end of the file. The mark that some programs put before UTF-8 is left out. STATUS_FORMAT: a zero byte, a
+ * line that is too long; STATUS_IO. */
 MUST_CHECK enum status line_reader_next(struct line_reader *reader, char **line, struct error *why);
 
 /* line_reader_finish - reads what is left, and puts the size and the hash of the whole file into the measurement.

@@ -168,7 +168,8 @@ struct halfdiff_trig bins_trig(enum bins bins, int i, int j, int k)
 	const struct bin_centre at = bin_centre(bins, i, j, k);
 	struct halfdiff_trig t;
 
-	/* theta_h is rounded, so near 90 degrees its cosine is more accurate from the complement, which is rounded separately. */
+	/* theta_h is rounded, so near 90 degrees its cosine is more accurate from the complement, which is rounded
+	 * separately. */
 	if (at.theta_h_times_90 <= 45.0 * 90.0)
 		sincos_deg(at.theta_h_times_90 / 90.0, &t.sin_h, &t.cos_h);
 	else

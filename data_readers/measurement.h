@@ -71,13 +71,14 @@ const char *bins_name(enum bins bins);
 /* bins_find - the reverse; STATUS_DOMAIN, *bins untouched, for another name. */
 MUST_CHECK enum status bins_find(const char *name, enum bins *bins);
 
-/* measurement_alloc - a table of the given n_phi_d (180 or 360), every entry masked (NaN). Free with measurement_free. */
+/* measurement_alloc - a table of the given n_phi_d (180 or 360), every entry masked (NaN). Free with
+ * measurement_free. */
 MUST_CHECK enum status measurement_alloc(struct measurement *measurement, int n_phi_d);
-/* measurement_reserve - the same with unset values, for a reader that sets every one: it saves a pass over the memory. Both
- * return STATUS_DOMAIN for another n_phi_d, STATUS_NO_MEMORY; *measurement is then cleared. */
+/* measurement_reserve - the same with unset values, for a reader that sets every one: it saves a pass over the memory.
+ * Both return STATUS_DOMAIN for another n_phi_d, STATUS_NO_MEMORY; *measurement is then cleared. */
 MUST_CHECK enum status measurement_reserve(struct measurement *measurement, int n_phi_d);
-/* measurement_scattered - room for n >= 1 scattered entries, all values unset, isotropic. STATUS_NO_MEMORY; *measurement is
- * then cleared. A reader that finds fewer lowers scattered->n. */
+/* measurement_scattered - room for n >= 1 scattered entries, all values unset, isotropic. STATUS_NO_MEMORY;
+ * *measurement is then cleared. A reader that finds fewer lowers scattered->n. */
 MUST_CHECK enum status measurement_scattered(struct measurement *measurement, size_t n);
 /* measurement_require_table - STATUS_UNSUPPORTED, and that `what` ("fit", ...) needs a table, for scattered entries. */
 MUST_CHECK enum status measurement_require_table(const struct measurement *measurement, const char *what,
@@ -89,8 +90,8 @@ enum left_out {
 	LEFT_OUT_ALL,      /* those that were not measured, too */
 	LEFT_OUT_OF_TABLE, /* all, and of a table those that are masked */
 };
-/* measurement_left_out - how many entries of the file are not among those of the measurement, and why, "3 negative; 1 at or below
- * the horizon"; of those out of gamut only if `masked`. Returns text. */
+/* measurement_left_out - how many entries of the file are not among those of the measurement, and why, "3 negative; 1
+ * at or below the horizon"; of those out of gamut only if `masked`. Returns text. */
 const char *measurement_left_out(const struct measurement *measurement, enum left_out which, bool masked,
 				 char text[MEASUREMENT_LEFT_OUT]);
 /* measurement_free - releases the planes and clears the struct; harmless on a zeroed one. */
@@ -103,8 +104,8 @@ static inline size_t measurement_count(const struct measurement *measurement)
 				      : (size_t)MERL_THETA_H * MERL_THETA_D * (size_t)measurement->n_phi_d;
 }
 
-/* measurement_at - the index of entry (i, j, k) of theta_h, theta_d, phi_d in a plane with this n_phi_d, in the order of the
- * file. */
+/* measurement_at - the index of entry (i, j, k) of theta_h, theta_d, phi_d in a plane with this n_phi_d, in the order
+ * of the file. */
 static inline size_t measurement_at(int n_phi_d, int i, int j, int k)
 {
 	return (size_t)k + (size_t)n_phi_d * ((size_t)j + MERL_THETA_D * (size_t)i);

@@ -42,8 +42,8 @@ static enum status read_rgl(const char *path, const struct read_options *options
 	return rgl_read(path, options->gamut, measurement, error);
 }
 
-/* The first that is sure, else the first that may be, has it. A format behind another with the same extension tells what
- * is wrong only where the content points to it. */
+/* The first that is sure, else the first that may be, has it. A format behind another with the same extension tells
+ * what is wrong only where the content points to it. */
 static const struct format formats[] = {
 	{{"merl", ".binary", "MERL table, 90 x 90 x 180 or 360"}, "\x5a\0\0\0\x5a\0\0\0", 8, read_merl, NULL},
 	{{"rgl", ".bsdf", "RGL material database"}, "tensor_file", 12, read_rgl, NULL},

@@ -179,8 +179,8 @@ static struct masked mask(const struct measurement *measurement, size_t first, s
 	return (struct masked){n_negative, n_nonfinite};
 }
 
-/* struct turns - lets threads do something one after the other. Unlike OpenMP's `ordered`, a waiting thread sleeps. On a
- * busy machine a spinning thread competes with the one it waits for, and reading takes ten times as long. */
+/* struct turns - lets threads do something one after the other. Unlike OpenMP's `ordered`, a waiting thread sleeps. On
+ * a busy machine a spinning thread competes with the one it waits for, and reading takes ten times as long. */
 struct turns {
 	pthread_mutex_t mutex;
 	pthread_cond_t changed;

@@ -14,13 +14,13 @@
  * result. An entry with a negative or non-finite value in any channel is masked in all three and counted once, as
  * non-finite if it is both; what is beyond the range of float counts as non-finite, what is too small for a normal
  * float becomes 0. Returns STATUS_IO if the file cannot be opened or read or changes meanwhile; STATUS_FORMAT if it is
- * not a regular file, or its dimensions or size are not a MERL table's; STATUS_NO_MEMORY. *measurement is then cleared and
- * `error` (may be NULL) says which file, what was expected, what was found. Never waits on a pipe or a device. */
+ * not a regular file, or its dimensions or size are not a MERL table's; STATUS_NO_MEMORY. *measurement is then cleared
+ * and `error` (may be NULL) says which file, what was expected, what was found. Never waits on a pipe or a device. */
 MUST_CHECK enum status merl_read(const char *path, int threads, struct measurement *measurement, struct error *error);
 
-/* merl_write - writes a table; masked entries as -1. STATUS_UNSUPPORTED for scattered entries. Reading it again gives the same floats.
- * Written beside `path`, synced, renamed when complete, see atomic_file.h. Returns STATUS_IO, STATUS_NO_MEMORY;
- * what was at `path` is then untouched. */
+/* merl_write - writes a table; masked entries as -1. STATUS_UNSUPPORTED for scattered entries. Reading it again gives
+ * the same floats. Written beside `path`, synced, renamed when complete, see atomic_file.h. Returns STATUS_IO,
+ * STATUS_NO_MEMORY; what was at `path` is then untouched. */
 MUST_CHECK enum status merl_write(const char *path, const struct measurement *measurement, struct error *error);
 
 #endif

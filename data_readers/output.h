@@ -3,8 +3,8 @@
  *
  * "-" is standard output. Symbolic links are followed. What the last one leads to is
  *   - a descriptor (/dev/stdout, /dev/fd/N, /proc/self/fd/N and the like), a device, a pipe or a socket: it is written
- *     in order, as it is, without a backup. A descriptor of this process is written through itself, so that its position
- *     is the one of whoever else writes to it.
+ *     in order, as it is, without a backup. A descriptor of this process is written through itself, so that its
+ *     position is the one of whoever else writes to it.
  *   - a regular file, or nothing yet: a file is replaced by a rename of a new one beside it; its backup, FILE~, stands
  *     beside it, too. No link is ever renamed or replaced, nor anything below /proc. */
 #ifndef OUTPUT_H

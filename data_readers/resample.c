@@ -43,8 +43,9 @@ static struct vec3 turned(struct vec3 v, double phi, bool mirrored)
 	return (struct vec3){c * v.x - s * y, s * v.x + c * y, v.z};
 }
 
-/* The interpolant's mean over both sides of the plane of incidence, over both orders of wi and wo unless the table tells them
- * apart, and over turns of the sample; a channel out of gamut is 0. Only orders whose wi is not below `least` take part. */
+/* The interpolant's mean over both sides of the plane of incidence, over both orders of wi and wo unless the table
+ * tells them apart, and over turns of the sample; a channel out of gamut is 0. Only orders whose wi is not below
+ * `least` take part. */
 static struct interpolated mean_at(const struct filling *f, struct vec3 wi, struct vec3 wo, double least)
 {
 	const int turns = f->scattered->symmetry == SYMMETRY_ISOTROPIC ? 1 : TURNS;

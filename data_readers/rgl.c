@@ -76,8 +76,8 @@ static double polar_angle(struct vec3 w)
 	return atan2(hypot(w.x, w.y), w.z);
 }
 
-/* Where the azimuths cover a part of the circle, both directions are reflected until wi is in it: of a sample that equals its
- * mirror images (4), or itself turned by 180 degrees (2). */
+/* Where the azimuths cover a part of the circle, both directions are reflected until wi is in it: of a sample that
+ * equals its mirror images (4), or itself turned by 180 degrees (2). */
 static void fold(const struct rgl *rgl, struct vec3 *wi, struct vec3 *wo)
 {
 	const double repeats = is_isotropic(rgl) ? 1 : azimuth_repeats(rgl);
@@ -358,8 +358,8 @@ static bool was_measured(const struct mask *mask, size_t node)
 	return !mask->valid || mask_bit(mask, node) == mask->measured;
 }
 
-/* The entry of node (x, y) of the square. Nodes that stand for one direction count once: x = 0 is the macroscopic normal
- * for every y, and the last y is the first again. */
+/* The entry of node (x, y) of the square. Nodes that stand for one direction count once: x = 0 is the macroscopic
+ * normal for every y, and the last y is the first again. */
 static enum status node_entry(const struct rgl *rgl, const double param[], double measure, size_t slice, size_t x,
 			      size_t y, struct entry_list *list)
 {
@@ -380,8 +380,8 @@ static enum status node_entry(const struct rgl *rgl, const double param[], doubl
 	for (int c = 0; c < MERL_CHANNELS; c++)
 		entry.value[c] =
 			(double)rgl->rgb[c].value[slice * rgl->rgb[c].stride + y * width + x] * factor / entry.wo.z;
-	/* The cell of the square, through the warp, theta = pi/2 x^2 and phi = 2 pi y, and the reflection. Where the warp
-	 * folds, the cell has no size. */
+	/* The cell of the square, through the warp, theta = pi/2 x^2 and phi = 2 pi y, and the reflection. Where the
+	 * warp folds, the cell has no size. */
 	const double edge = x == 0 || x + 1 == width ? 0.5 : 1;
 	const double square = pdf > 0 ? edge / ((double)(width - 1) * (double)(height - 1) * pdf) : 0;
 	entry.solid_angle = fmin(square * 2 * M_PI * M_PI * p.x * sin(theta) * 4 * dot * measure, 4 * M_PI * M_PI);

@@ -10,8 +10,8 @@
 /* Fine enough for a peak at theta_m = 0.1 degrees; they cost little. */
 enum { DENSITY_NODES = 1024, DENSITY_AZIMUTHS = 361, WARP_NODES = 256, BANDS = 3, WAVELENGTHS = 2 * BANDS };
 
-/* Three bands with steps at 495 and 590 nm. With these the spectrum of every colour of sRGB is nowhere negative; bands of
- * other limits, or spectra linear between three wavelengths, lack that. A gray one is flat. */
+/* Three bands with steps at 495 and 590 nm. With these the spectrum of every colour of sRGB is nowhere negative; bands
+ * of other limits, or spectra linear between three wavelengths, lack that. A gray one is flat. */
 static const float wavelength[WAVELENGTHS] = {380, 490, 500, 585, 595, 780};
 
 static const double theta_last = 89.9 * M_PI / 180;
@@ -153,8 +153,8 @@ static void fill_densities(struct content *content, const struct rgl_layout *lay
 #pragma omp parallel for num_threads(layout->threads)
 	for (size_t x = 0; x < DENSITY_NODES; x++)
 		fill_density(content, layout, x);
-	/* All slices are equal: the density of theta_m, without the constant of its azimuth. The root of the cosine keeps
-	 * nodes from the horizon, where most of them see nothing. */
+	/* All slices are equal: the density of theta_m, without the constant of its azimuth. The root of the cosine
+	 * keeps nodes from the horizon, where most of them see nothing. */
 	for (size_t at = 0; at < layout->n_phi * layout->n_theta * 2 * WARP_NODES; at++) {
 		const size_t node = at % WARP_NODES;
 		const double x = (double)node / (WARP_NODES - 1), theta = theta_of(x);

@@ -89,7 +89,8 @@ static float middle_of(const struct point *point, size_t n, int angle)
 	return sample[SAMPLE / 2];
 }
 
-/* Where to cut near `middle`: half way between it and the next on the side that has more points. NaN if all are equal. */
+/* Where to cut near `middle`: half way between it and the next on the side that has more points. NaN if all are
+ * equal. */
 static double cut_at(const struct point *point, size_t n, int angle, float middle)
 {
 	float below = -INFINITY, above = INFINITY;

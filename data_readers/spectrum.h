@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* spectrum - reflectance spectra as linear sRGB.
  *
- * A spectrum is linear between its wavelengths and constant beyond them. It is summed from 380 to 780 nm in steps of 1 nm
- * with the colour matching functions of the CIE 1931 standard observer (2 degrees) and the illuminant D65, both tabulated
- * at 5 nm [CIE 15:2004] and linear between; then to linear sRGB [IEC 61966-2-1]. Each channel is divided by its own sum, so
- * that a reflectance of 1 at all wavelengths is 1, 1, 1. */
+ * A spectrum is linear between its wavelengths and constant beyond them. It is summed from 380 to 780 nm in steps of 1
+ * nm with the colour matching functions of the CIE 1931 standard observer (2 degrees) and the illuminant D65, both
+ * tabulated at 5 nm [CIE 15:2004] and linear between; then to linear sRGB [IEC 61966-2-1]. Each channel is divided by
+ * its own sum, so that a reflectance of 1 at all wavelengths is 1, 1, 1. */
 #ifndef SPECTRUM_H
 #define SPECTRUM_H
 
@@ -12,13 +12,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* spectrum_has_colour - whether wavelengths nm[0 .. n-1], rising, reach far enough for a colour: from 450 nm or below to
- * 650 nm or above, with at least three. Of others only a gray value is known. */
+/* spectrum_has_colour - whether wavelengths nm[0 .. n-1], rising, reach far enough for a colour: from 450 nm or below
+ * to 650 nm or above, with at least three. Of others only a gray value is known. */
 bool spectrum_has_colour(const double *nm, size_t n);
 
-/* spectrum_weights - weight[c * n + j], by which the value at nm[j] counts in channel c. Where the wavelengths have no colour
- * the three weights are 1 / n: the mean, gray.
- * STATUS_DOMAIN: not n >= 1 finite wavelengths above 0 that rise. */
+/* spectrum_weights - weight[c * n + j], by which the value at nm[j] counts in channel c. Where the wavelengths have no
+ * colour the three weights are 1 / n: the mean, gray. STATUS_DOMAIN: not n >= 1 finite wavelengths above 0 that
+ * rise. */
 MUST_CHECK enum status spectrum_weights(const double *nm, size_t n, double *weight);
 
 /* spectrum_rgb - the sums of the n values with these weights. */

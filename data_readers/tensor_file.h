@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* tensor_file - the container of the RGL material database: named arrays of numbers, little-endian.
  *
- *     "tensor_file\0", uint8 version 1 and 0, uint32 number of fields; per field: uint16 length and name, uint16 number of
- *     dimensions, uint8 type, uint64 offset of the data, uint64 size of each dimension, the last running fastest. */
+ *     "tensor_file\0", uint8 version 1 and 0, uint32 number of fields; per field: uint16 length and name, uint16 number
+ *     of dimensions, uint8 type, uint64 offset of the data, uint64 size of each dimension, the last running fastest. */
 #ifndef TENSOR_FILE_H
 #define TENSOR_FILE_H
 
@@ -33,9 +33,8 @@ struct tensor_file {
 /* tensor_file_is - whether bytes begin as such a file does. */
 bool tensor_file_is(const unsigned char *bytes, size_t size);
 
-/* tensor_file_parse - the fields of a file in memory, which has to outlive *file. Every field lies within the file, after the
- * header, and apart from all others.
- * STATUS_FORMAT with a text that does not name the file. */
+/* tensor_file_parse - the fields of a file in memory, which has to outlive *file. Every field lies within the file,
+ * after the header, and apart from all others. STATUS_FORMAT with a text that does not name the file. */
 MUST_CHECK enum status tensor_file_parse(const unsigned char *bytes, size_t size, struct tensor_file *file,
 					 struct error *why);
 
@@ -46,13 +45,14 @@ const struct tensor *tensor_file_find(const struct tensor_file *file, const char
  * that is not finite; STATUS_NO_MEMORY. */
 MUST_CHECK enum status tensor_floats(const struct tensor *tensor, float **values, struct error *why);
 
-/* tensor_file_add - one more field; its data are borrowed: count numbers of this machine, float32, or bytes, uint8. count is
- * set from the shape. At most TENSOR_FIELDS_MAX fields, TENSOR_DIMS_MAX dimensions, names below TENSOR_NAME_SIZE. */
+/* tensor_file_add - one more field; its data are borrowed: count numbers of this machine, float32, or bytes, uint8.
+ * count is set from the shape. At most TENSOR_FIELDS_MAX fields, TENSOR_DIMS_MAX dimensions, names below
+ * TENSOR_NAME_SIZE. */
 void tensor_file_add(struct tensor_file *file, const char *name, enum tensor_type type, int dims, const size_t shape[],
 		     const void *data);
 
-/* tensor_file_encode - the bytes of a file with the fields that were added, newly allocated. Data begin at multiples of 8.
- * STATUS_NO_MEMORY. */
+/* tensor_file_encode - the bytes of a file with the fields that were added, newly allocated. Data begin at multiples of
+ * 8. STATUS_NO_MEMORY. */
 MUST_CHECK enum status tensor_file_encode(const struct tensor_file *file, unsigned char **bytes, size_t *size);
 
 #endif

@@ -11,7 +11,8 @@
 
 static FILE *open_text(const char *path)
 {
-	/* With O_NONBLOCK, opening a pipe without a writer does not block. Reading one that has a writer waits for its data. */
+	/* With O_NONBLOCK, opening a pipe without a writer does not block. Reading one that has a writer waits for its
+	 * data. */
 	const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
 	if (fd < 0)
 		return NULL;

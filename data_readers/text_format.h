@@ -14,8 +14,8 @@ enum match {
 	MATCH_SURE
 };
 
-/* struct text_format - a reader. Both take text; `parse` adds the entries to the list. Its errors name the line but not the
- * file: STATUS_FORMAT, STATUS_UNSUPPORTED, STATUS_IO, STATUS_NO_MEMORY. */
+/* struct text_format - a reader. Both take text; `parse` adds the entries to the list. Its errors name the line but not
+ * the file: STATUS_FORMAT, STATUS_UNSUPPORTED, STATUS_IO, STATUS_NO_MEMORY. */
 struct text_format {
 	enum match (*detect)(const char *text); /* the beginning of the file, terminated */
 	enum status (*parse)(struct line_reader *lines, const struct read_options *options, struct entry_list *list,
@@ -46,7 +46,8 @@ void channels_note(const struct channels *channels, struct entry_list *list);
 /* direction - the unit vector of a polar angle and an azimuth, radians. */
 struct vec3 direction(double theta, double phi);
 
-/* line_is_comment - whether a line is blank or begins with #. line_next_used - the next line that is not; NULL at the end. */
+/* line_is_comment - whether a line is blank or begins with #. line_next_used - the next line that is not; NULL at the
+ * end. */
 bool line_is_comment(const char *line);
 MUST_CHECK enum status line_next_used(struct line_reader *lines, char **line, struct error *why);
 
@@ -55,7 +56,8 @@ MUST_CHECK enum status line_next_used(struct line_reader *lines, char **line, st
 MUST_CHECK enum status line_numbers(const struct line_reader *lines, const char *line, double *to, size_t max,
 				    size_t *n, struct error *why);
 
-/* text_line - copies the next line of *text, at most size - 1 bytes, without its end, and steps behind it; false at the end. */
+/* text_line - copies the next line of *text, at most size - 1 bytes, without its end, and steps behind it; false at the
+ * end. */
 bool text_line(const char **text, char *line, size_t size);
 
 #endif

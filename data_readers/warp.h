@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* warp - functions on the unit square, bilinear between the nodes of a grid, that depend on parameters, between whose values
- * they are linear too; and the warp of the square that such a density makes.
+/* warp - functions on the unit square, bilinear between the nodes of a grid, that depend on parameters, between whose
+ * values they are linear too; and the warp of the square that such a density makes.
  *
  * That of [Dupuy and Jakob 2018]: first y by the marginal density, then x by the conditional one. */
 #ifndef WARP_H
@@ -12,7 +12,8 @@
 
 enum { WARP_PARAMS = 2 };
 
-/* struct warp_axis - the values of a parameter, ascending; not owned. Between them one is linear, beyond them constant. */
+/* struct warp_axis - the values of a parameter, ascending; not owned. Between them one is linear, beyond them
+ * constant. */
 struct warp_axis {
 	const float *value;
 	size_t n; /* at least 1 */
@@ -41,8 +42,8 @@ struct warp {
 	float *scale;  /* [slice]: 1 / total, in units of cells */
 };
 
-/* warp_init - of a density >= 0 with something in each slice; *warp keeps density->value and the parameters, which are not
- * copied. STATUS_FORMAT: a negative value or an empty slice; STATUS_NO_MEMORY. */
+/* warp_init - of a density >= 0 with something in each slice; *warp keeps density->value and the parameters, which are
+ * not copied. STATUS_FORMAT: a negative value or an empty slice; STATUS_NO_MEMORY. */
 MUST_CHECK enum status warp_init(struct warp *warp, const struct grid *density, struct error *why);
 void warp_free(struct warp *warp);
 

@@ -42,6 +42,12 @@ static inline bool cook_torrance_has_grazing(const struct cook_torrance *model)
 	return model->kg[0] > 0 || model->kg[1] > 0 || model->kg[2] > 0;
 }
 
+/* cook_torrance_is_rich - whether the model is more than kd and a lobe whose F all channels share. */
+static inline bool cook_torrance_is_rich(const struct cook_torrance *model)
+{
+	return model->fresnel == FRESNEL_F82 || cook_torrance_has_second(model) || cook_torrance_has_grazing(model);
+}
+
 /* cook_torrance_F - F of channel c, 0 .. 2; channels differ with FRESNEL_F82 only. */
 double cook_torrance_F(const struct cook_torrance *model, int c, double cos_d);
 

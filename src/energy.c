@@ -19,6 +19,8 @@ enum { REFINEMENTS = 8 };
 
 struct ring {
 	const struct cook_torrance *model;
+	const struct ndf *ndf; /* of one of its lobes */
+	int channel;           /* whose F it is */
 	struct smith_table *G1;
 	double tolerance; /* absolute, of the outer integral; the inner ones have a share of it */
 	struct vec3 wi;
@@ -40,13 +42,12 @@ static double G_at(const struct ring *ring, double cos_d, struct vec3 wo)
 static double at_azimuth(double phi, void *params)
 {
 	const struct ring *ring = params;
-	const struct cook_torrance *model = ring->model;
 	const struct vec3 h = {ring->sin_h * cos(phi), ring->sin_h * sin(phi), ring->cos_h};
 	const double cos_d = vec3_dot(ring->wi, h);
 	const struct vec3 wo = vec3_sub(vec3_scale(h, 2.0 * cos_d), ring->wi);
 	if (!(wo.z > 0.0))
 		return 0.0;
-	return fresnel_F(model->fresnel, cos_d, model->n, model->k) * G_at(ring, cos_d, wo) * cos_d * ring->front;
+	return cook_torrance_F(ring->model, ring->channel, cos_d) * G_at(ring, cos_d, wo) * cos_d * ring->front;
 }
 
 /* The azimuth at which wi.h is cos_d, as a bound of [0, end]. */
@@ -81,7 +82,7 @@ static double at_slope(double v, void *params)
 	const double tangent = exp(v), cos_h = 1.0 / sqrt(1.0 + tangent * tangent), sin_h = tangent * cos_h;
 	const double sin_2h = 2.0 * sin_h * cos_h, cos_2h = (cos_h - sin_h) * (cos_h + sin_h);
 	const double end = wi.x > 0.0 ? acos(fmax(-1.0, fmin(1.0, -wi.z * cos_2h / (wi.x * sin_2h)))) : M_PI;
-	const double D = ndf_D(&ring->model->ndf, (struct vec3){sin_h, 0.0, cos_h});
+	const double D = ndf_D(ring->ndf, (struct vec3){sin_h, 0.0, cos_h});
 	ring->sin_h = sin_h;
 	ring->cos_h = cos_h;
 	ring->front = D * sin_h * sin_h * cos_h / wi.z;
@@ -121,33 +122,36 @@ static double integrate_slopes(struct ring *ring, double middle)
 	return sum;
 }
 
-/* struct surface - what one model has in common for all directions. */
+/* struct surface - what one lobe of a model has in common for all directions. */
 struct surface {
 	const struct cook_torrance *model;
+	const struct ndf *ndf;
+	int channel; /* whose F it is: that of FRESNEL_F82 differs */
 	double median;
 	struct smith_table G1;
 	bool has_axes;
 	struct energy_axes axes; /* then, instead of G1 */
 };
 
-static bool has_axes(const struct cook_torrance *model)
+static bool has_axes(const struct ndf *ndf)
 {
-	return model->ndf.sigma_x != model->ndf.sigma_y;
+	return ndf->sigma_x != ndf->sigma_y;
 }
 
-static enum status surface_init(struct surface *surface, const struct cook_torrance *model)
+static enum status surface_init(struct surface *surface, const struct cook_torrance *model, const struct ndf *ndf)
 {
 	surface->model = model;
-	surface->has_axes = has_axes(model);
+	surface->ndf = ndf;
+	surface->channel = 0;
+	surface->has_axes = has_axes(ndf);
 	if (surface->has_axes) {
-		const struct ndf *ndf = &model->ndf;
 		const double mean = sqrt(ndf->sigma_x * ndf->sigma_y);
 		/* At u1 = 0 the slope lies along x. */
 		surface->median = median_slope(ndf) * (mean / ndf->sigma_x);
 		return energy_axes_init(&surface->axes, model, surface->median);
 	}
-	surface->median = median_slope(&model->ndf);
-	smith_table_init(&surface->G1, &model->ndf, surface->median);
+	surface->median = median_slope(ndf);
+	smith_table_init(&surface->G1, ndf, surface->median);
 	return STATUS_OK;
 }
 
@@ -155,28 +159,79 @@ static enum status surface_init(struct surface *surface, const struct cook_torra
 static double lobe_albedo(struct surface *surface, double cos_i, double tolerance)
 {
 	const double z = fmax(cos_i, GRAZING * fmin(surface->median, 1.0));
-	if (surface->has_axes)
+	if (surface->has_axes) {
+		surface->axes.channel = surface->channel;
 		return fmax(energy_axes_lobe(&surface->axes, 0, z, tolerance),
 			    energy_axes_lobe(&surface->axes, 1, z, tolerance));
+	}
 	struct ring ring = {.model = surface->model,
+			    .ndf = surface->ndf,
+			    .channel = surface->channel,
 			    .G1 = &surface->G1,
 			    .tolerance = tolerance,
 			    .wi = {sqrt((1.0 - z) * (1.0 + z)), 0.0, z}};
-	ring.lambda_i = ndf_lambda(&surface->model->ndf, ring.wi);
+	ring.lambda_i = ndf_lambda(surface->ndf, ring.wi);
 	return integrate_slopes(&ring, log(surface->median));
+}
+
+/* What a single direction asks for. */
+static enum status check(const struct cook_torrance *model, double cos_i)
+{
+	if (!(cos_i >= 0.0 && cos_i <= 1.0))
+		return STATUS_DOMAIN;
+	return has_axes(&model->ndf) ? STATUS_UNSUPPORTED : STATUS_OK;
 }
 
 enum status energy_lobe(const struct cook_torrance *model, double cos_i, double *albedo)
 {
 	struct surface surface;
-	if (!(cos_i >= 0.0 && cos_i <= 1.0))
-		return STATUS_DOMAIN;
-	if (has_axes(model))
-		return STATUS_UNSUPPORTED;
-	const enum status status = surface_init(&surface, model);
+	enum status status = check(model, cos_i);
+	if (status == STATUS_OK)
+		status = surface_init(&surface, model, &model->ndf);
 	if (status == STATUS_OK)
 		*albedo = lobe_albedo(&surface, cos_i, TOLERANCE);
 	return status;
+}
+
+double energy_grazing(double exponent, double cos_i)
+{
+	/* cos_d^2 is (1 + wi.wo)/2, the mean of which over the azimuths (1 + cos_i cos_o)/2. What is left are beta functions. */
+	const double p = exponent, all = 1.0 / ((p + 1.0) * (p + 2.0));
+	return pow(1.0 - cos_i, p) * (0.5 + cos_i / 3.0) + all + cos_i * all * 2.0 / (p + 3.0);
+}
+
+/* struct balance - the lobes of a model, and whose albedo is asked for. */
+struct balance {
+	const struct cook_torrance *model;
+	struct surface first, second;
+	int channel; /* -1: the first lobe alone, for ks = 1 */
+};
+
+static enum status balance_init(struct balance *balance, const struct cook_torrance *model)
+{
+	balance->model = model;
+	balance->channel = -1;
+	const enum status status = surface_init(&balance->first, model, &model->ndf);
+	return status == STATUS_OK && cook_torrance_has_second(model)
+		       ? surface_init(&balance->second, model, &model->second)
+		       : status;
+}
+
+static double balance_albedo(struct balance *balance, double cos_i, double tolerance)
+{
+	const struct cook_torrance *model = balance->model;
+	const int c = balance->channel;
+	if (c < 0)
+		return lobe_albedo(&balance->first, cos_i, tolerance);
+	balance->first.channel = balance->second.channel = c;
+	double albedo = model->kd[c];
+	if (model->kg[c] > 0.0)
+		albedo += model->kg[c] * energy_grazing(model->grazing, cos_i);
+	if (model->ks[c] > 0.0)
+		albedo += model->ks[c] * lobe_albedo(&balance->first, cos_i, tolerance);
+	if (model->ks_second[c] > 0.0)
+		albedo += model->ks_second[c] * lobe_albedo(&balance->second, cos_i, tolerance);
+	return albedo;
 }
 
 /* kd + ks lobe */
@@ -188,16 +243,24 @@ static void whole(const struct cook_torrance *model, double lobe, double albedo[
 
 enum status energy_albedo(const struct cook_torrance *model, double cos_i, double albedo[3])
 {
-	double lobe;
-	const enum status status = energy_lobe(model, cos_i, &lobe);
+	struct balance balance;
+	enum status status = check(model, cos_i);
 	if (status == STATUS_OK)
-		whole(model, lobe, albedo);
-	return status;
+		status = balance_init(&balance, model);
+	if (status != STATUS_OK)
+		return status;
+	if (!cook_torrance_is_rich(model)) {
+		whole(model, balance_albedo(&balance, cos_i, TOLERANCE), albedo);
+		return STATUS_OK;
+	}
+	for (balance.channel = 0; balance.channel < 3; balance.channel++)
+		albedo[balance.channel] = balance_albedo(&balance, cos_i, TOLERANCE);
+	return STATUS_OK;
 }
 
 /* A direction by x = -log2 cot(theta_i). */
 struct direction {
-	double x, lobe;
+	double x, albedo;
 };
 
 static double cos_at(double x)
@@ -206,20 +269,20 @@ static double cos_at(double x)
 	return cot / sqrt(1.0 + cot * cot);
 }
 
-static struct direction evaluate(struct surface *surface, double x)
+static struct direction evaluate(struct balance *balance, double x)
 {
-	return (struct direction){x, lobe_albedo(surface, cos_at(x), TOLERANCE_MANY)};
+	return (struct direction){x, balance_albedo(balance, cos_at(x), TOLERANCE_MANY)};
 }
 
 /* Golden sections of the octaves on either side of a maximum of the coarse evaluations. */
-static struct direction refine(struct surface *surface, struct direction best)
+static struct direction refine(struct balance *balance, struct direction best)
 {
 	const double golden = 0.38196601125010515;
 	double low = best.x - 1.0, high = best.x + 1.0;
 	for (int i = 0; i < REFINEMENTS; i++) {
 		const bool right = high - best.x > best.x - low;
-		const struct direction next = evaluate(surface, best.x + golden * ((right ? high : low) - best.x));
-		if (next.lobe > best.lobe) {
+		const struct direction next = evaluate(balance, best.x + golden * ((right ? high : low) - best.x));
+		if (next.albedo > best.albedo) {
 			*(right ? &low : &high) = best.x;
 			best = next;
 		} else {
@@ -229,30 +292,51 @@ static struct direction refine(struct surface *surface, struct direction best)
 	return best;
 }
 
-enum status energy_albedo_max(const struct cook_torrance *model, double albedo[3], double *theta_i)
+/* The largest over all directions, and where that is. */
+static double largest(struct balance *balance, double *theta_i)
 {
-	struct surface surface;
-	const enum status status = surface_init(&surface, model);
-	if (status != STATUS_OK)
-		return status;
+	const double first = log2(balance->first.median);
+	const double second = cook_torrance_has_second(balance->model) ? log2(balance->second.median) : first;
 	/* From the normal to where all is as at grazing incidence, which for a sharp lobe is close to the horizon only. */
-	const double end = 10.0 - fmin(log2(surface.median), 0.0);
-	const double normal = lobe_albedo(&surface, 1.0, TOLERANCE_MANY);
-	const double grazing = lobe_albedo(&surface, 0.0, TOLERANCE_MANY);
-	struct direction best = {0.0, -1.0}, before = {0.0, normal}, at = evaluate(&surface, -3.0);
+	const double end = 10.0 - fmin(fmin(first, second), 0.0);
+	const double normal = balance_albedo(balance, 1.0, TOLERANCE_MANY);
+	const double grazing = balance_albedo(balance, 0.0, TOLERANCE_MANY);
+	struct direction best = {0.0, -1.0}, before = {0.0, normal}, at = evaluate(balance, -3.0);
 	/* There may be several maxima: one inside and one at either end. */
 	for (double x = -2.0; x < end; x++) {
-		const struct direction next = evaluate(&surface, x);
-		if (at.lobe >= fmax(before.lobe, next.lobe)) {
-			const struct direction top = refine(&surface, at);
-			best = top.lobe > best.lobe ? top : best;
+		const struct direction next = evaluate(balance, x);
+		if (at.albedo >= fmax(before.albedo, next.albedo)) {
+			const struct direction top = refine(balance, at);
+			best = top.albedo > best.albedo ? top : best;
 		}
 		before = at;
 		at = next;
 	}
-	const bool inside = best.lobe > fmax(normal, grazing);
-	whole(model, inside ? best.lobe : fmax(normal, grazing), albedo);
+	const bool inside = best.albedo > fmax(normal, grazing);
 	*theta_i = inside ? atan(exp2(best.x)) : normal >= grazing ? 0.0 : 0.5 * M_PI;
+	return inside ? best.albedo : fmax(normal, grazing);
+}
+
+enum status energy_albedo_max(const struct cook_torrance *model, double albedo[3], double *theta_i)
+{
+	struct balance balance;
+	const enum status status = balance_init(&balance, model);
+	if (status != STATUS_OK)
+		return status;
+	if (!cook_torrance_is_rich(model)) {
+		whole(model, largest(&balance, theta_i), albedo);
+		return STATUS_OK;
+	}
+	double most = -1.0;
+	for (int c = 0; c < 3; c++) {
+		double at;
+		balance.channel = c;
+		albedo[c] = largest(&balance, &at);
+		if (albedo[c] > most) {
+			most = albedo[c];
+			*theta_i = at;
+		}
+	}
 	return STATUS_OK;
 }
 
@@ -265,10 +349,10 @@ enum status energy_furnace(const struct cook_torrance *model, double *balance)
 {
 	struct cook_torrance mirror = *model;
 	mirror.fresnel = FRESNEL_NONE;
-	if (has_axes(model))
+	if (has_axes(&model->ndf))
 		return STATUS_UNSUPPORTED;
 	struct surface surface;
-	const enum status status = surface_init(&surface, &mirror);
+	const enum status status = surface_init(&surface, &mirror, &mirror.ndf);
 	if (status == STATUS_OK)
 		*balance = quadrature_adaptive(furnace_at, &surface, 0.0, 0.5 * M_PI, TOLERANCE_MANY);
 	return status;

@@ -17,14 +17,19 @@
  *          that. */
 MUST_CHECK enum status energy_lobe(const struct cook_torrance *model, double cos_i, double *albedo);
 
-/* energy_albedo - directional albedo of the whole model, kd_c + ks_c times that of the lobe, c = red, green, blue. */
+/* energy_grazing - directional albedo of the diffuse term of grazing directions [cook_torrance_grazing()] for kg = 1, exactly;
+ * exponent >= 1, cos_i in [0, 1]. */
+double energy_grazing(double exponent, double cos_i);
+
+/* energy_albedo - directional albedo of the whole model, kd_c + ks_c times that of the lobe, and what richer models add, c = red,
+ * green, blue. */
 MUST_CHECK enum status energy_albedo(const struct cook_torrance *model, double cos_i, double albedo[3]);
 
 /* energy_albedo_max - the largest directional albedo of the whole model over all directions of incidence, c = red, green,
  * blue. More than 1 is more light than comes in, which no surface sends back.
  * Given:   as energy_lobe(), but that it may be anisotropic; ks >= 0
  * Returns: STATUS_OK; albedo[], absolute error 1e-5 for kd, ks up to 1; *theta_i, radians in [0, pi/2], where that is:
- *          one direction for all channels, as their lobes are alike. Of an anisotropic lobe, the larger one of both axes'
+ *          one direction for all channels, as their lobes are alike; of a richer model, whose are not, that of the largest. Of an anisotropic lobe, the larger one of both axes'
  *          planes: between them it is not larger. STATUS_UNSUPPORTED for such a lobe with GAF_V_GROOVE.
  * Note:    evaluates about thirty directions and refines around the largest: 5 to 20 ms for STD, GGX and Beckmann, 60 ms
  *          for anisotropic ones; sharp lobes of gtr and low ten times as much. */

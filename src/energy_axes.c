@@ -54,7 +54,7 @@ static double at_azimuth(double phi, void *params)
 	if (!(wo.z > 0.0))
 		return 0.0;
 	const double G = gaf_smith(model->gaf, ring->lambda_i, lambda_of(ring, wo));
-	return fresnel_F(model->fresnel, cos_d, model->n, model->k) * G * cos_d * ring->front / h.z;
+	return cook_torrance_F(model, ring->axes->channel, cos_d) * G * cos_d * ring->front / h.z;
 }
 
 /* wo reaches the horizon where A x^2 + B x + C = 0, x = cos(phi): the azimuths of these in [0, pi], ascending, between

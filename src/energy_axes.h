@@ -9,6 +9,7 @@
 /* struct energy_axes - the lobe in terms of an isotropic one whose slopes are stretched along both axes. */
 struct energy_axes {
 	const struct cook_torrance *model;
+	int channel;       /* whose F it is */
 	struct ndf round;  /* the isotropic distribution of roughness sqrt(sigma_x sigma_y) */
 	double stretch[2]; /* of its slopes, along the first axis and across */
 	double median;     /* of its slopes */

@@ -4,7 +4,7 @@
 #include <complex.h>
 #include <math.h>
 
-static const char *const names[FRESNEL_COUNT] = {"dielectric", "schlick", "conductor", "none"};
+static const char *const names[FRESNEL_COUNT] = {"dielectric", "schlick", "conductor", "none", "f82"};
 
 const char *fresnel_name(enum fresnel fresnel)
 {
@@ -115,6 +115,7 @@ double fresnel_F(enum fresnel fresnel, double cos_d, double n, double k)
 		return fresnel_conductor(cos_d, n, k);
 	case FRESNEL_NONE:
 	case FRESNEL_F82:
+	case FRESNEL_COUNT:
 		break;
 	}
 	return 1.0;

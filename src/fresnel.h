@@ -6,18 +6,18 @@
 #define FRESNEL_H
 
 #include "src/status.h"
+#include <stdbool.h>
 
 enum fresnel {
 	FRESNEL_DIELECTRIC, /* exact, real index n */
 	FRESNEL_SCHLICK,    /* F0 + (1 - F0)(1 - cos_d)^5 with F0 = ((n-1)/(n+1))^2 */
 	FRESNEL_CONDUCTOR,  /* exact, complex index n + i k */
 	FRESNEL_NONE,       /* 1 */
-	FRESNEL_COUNT,      /* of those that have a name */
-	FRESNEL_F82 =
-		FRESNEL_COUNT /* three reflectances, see fresnel_f82(): not a function of n and k. A model may have it, no fit yet */
+	FRESNEL_F82,        /* three reflectances, see fresnel_f82(): not a function of n and k */
+	FRESNEL_COUNT
 };
 
-/* fresnel_name - "dielectric", "schlick", "conductor", "none"; "unknown" for any other value. */
+/* fresnel_name - "dielectric", "schlick", "conductor", "none", "f82"; "unknown" for any other value. */
 const char *fresnel_name(enum fresnel fresnel);
 /* fresnel_find - the form called `name`. Returns STATUS_DOMAIN, *fresnel untouched, when there is none. */
 MUST_CHECK enum status fresnel_find(const char *name, enum fresnel *fresnel);
@@ -47,6 +47,12 @@ double fresnel_conductor(double cos_d, double eta, double k);
 enum { F82_PARTS = 3 };
 void fresnel_f82_parts(double cos_d, double part[F82_PARTS]);
 double fresnel_f82(double cos_d, const double reflectance[F82_PARTS]);
+
+/* fresnel_has_ior - whether the form is a function of an index of refraction. */
+static inline bool fresnel_has_ior(enum fresnel fresnel)
+{
+	return fresnel != FRESNEL_NONE && fresnel != FRESNEL_F82;
+}
 
 /* fresnel_F - the chosen form; k is read by the conductor only, n by all but FRESNEL_NONE. 1 for FRESNEL_F82, whose
  * reflectances a caller has to know. */

@@ -4,6 +4,7 @@
 #include <gsl/gsl_sf_gamma.h>
 #include <gsl/gsl_sf_hyperg.h>
 #include <math.h>
+#include <string.h>
 
 /* Where GSL's 2F1 and, for the sums, the cancellation in double precision end. */
 #define GAMMA_MAX_2F1 1e5
@@ -15,12 +16,15 @@ static const char *const names[LAMBDA_FORM_COUNT] = {"exact", "2f1", "integer", 
 
 const char *lambda_form_name(enum lambda_form form)
 {
+	if (form == LAMBDA_TRAPEZOID)
+		return "trapezoid";
 	return names_at(names, LAMBDA_FORM_COUNT, (int)form);
 }
 
 enum status lambda_form_find(const char *name, enum lambda_form *form)
 {
-	const int i = names_find(names, LAMBDA_FORM_COUNT, name);
+	const bool trapezoid = name && strcmp(name, "trapezoid") == 0;
+	const int i = trapezoid ? LAMBDA_TRAPEZOID : names_find(names, LAMBDA_FORM_COUNT, name);
 	if (i < 0)
 		return STATUS_DOMAIN;
 	*form = (enum lambda_form)i;
@@ -42,6 +46,7 @@ bool lambda_form_takes(enum lambda_form form, double gamma)
 	case LAMBDA_HALF_INTEGER:
 		return gamma <= GAMMA_MAX_SUM && gamma - 0.5 == floor(gamma);
 	case LAMBDA_FORM_COUNT:
+	case LAMBDA_TRAPEZOID:
 		break;
 	}
 	return false;
@@ -153,6 +158,7 @@ double lambda_form_lambda(enum lambda_form form, double gamma, double K, double 
 	case LAMBDA_RATIONAL:
 	case LAMBDA_EXACT:
 	case LAMBDA_FORM_COUNT:
+	case LAMBDA_TRAPEZOID:
 		break;
 	}
 	return lambda < 0.0 ? 0.0 : lambda;

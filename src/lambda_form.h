@@ -19,10 +19,11 @@ enum lambda_form {
 	LAMBDA_INTEGER,      /* finite sum: gamma = 2, 3, ..., 15; G1 to 1e-13 */
 	LAMBDA_HALF_INTEGER, /* finite sum: gamma = 2.5, 3.5, ..., 15.5; G1 to 1e-13 */
 	LAMBDA_RATIONAL,     /* eq. 22: rational functions; G1 to 0.72 %, every gamma; not 0 at normal incidence */
-	LAMBDA_FORM_COUNT
+	LAMBDA_FORM_COUNT,
+	LAMBDA_TRAPEZOID /* of pl alone: pwl_G1_trapezoid(), as its paper evaluates it; Lambda is 0 where G1 exceeds 1 */
 };
 
-/* lambda_form_name - "exact", "2f1", "integer", "half-integer", "rational"; "unknown" for any other value. */
+/* lambda_form_name - "exact", "2f1", "integer", "half-integer", "rational", "trapezoid"; "unknown" for any other value. */
 const char *lambda_form_name(enum lambda_form form);
 /* lambda_form_find - the form called `name`. Returns STATUS_DOMAIN, *form untouched, when there is none. */
 MUST_CHECK enum status lambda_form_find(const char *name, enum lambda_form *form);

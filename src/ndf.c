@@ -121,8 +121,23 @@ enum status ndf_init_params(struct ndf *ndf, const struct ndf_class *class, cons
 	return finish(&filled, ndf);
 }
 
+enum status ndf_init_params_anisotropic(struct ndf *ndf, const struct ndf_class *class, const double value[],
+					double sigma_y)
+{
+	struct ndf filled;
+	if (!class || class->isotropic || !sigma_valid(sigma_y) || ndf_init_params(&filled, class, value) != STATUS_OK)
+		return STATUS_DOMAIN;
+	filled.sigma_y = sigma_y;
+	*ndf = filled;
+	return STATUS_OK;
+}
+
 enum status ndf_set_lambda_form(struct ndf *ndf, enum lambda_form form)
 {
+	if (form == LAMBDA_TRAPEZOID && ndf->pwl) {
+		ndf->lambda_form = form;
+		return STATUS_OK;
+	}
 	if (form != LAMBDA_EXACT && !ndf->class->student_t)
 		return STATUS_UNSUPPORTED;
 	if (!lambda_form_takes(form, ndf->gamma))
@@ -170,6 +185,8 @@ double ndf_lambda(const struct ndf *ndf, struct vec3 w)
 	if (w.z <= 0.0)
 		return INFINITY;
 	w = ndf_to_axes(ndf, w);
+	if (ndf->lambda_form == LAMBDA_TRAPEZOID)
+		return fmax(1.0 / pwl_G1_trapezoid(ndf->pwl, w) - 1.0, 0.0);
 	if (ndf->lambda_form != LAMBDA_EXACT)
 		return lambda_form_lambda(ndf->lambda_form, ndf->gamma, ndf->lambda_K, student_t_z(ndf, w));
 	return ndf->class->lambda(ndf, w);

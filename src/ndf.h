@@ -112,12 +112,18 @@ MUST_CHECK enum status ndf_init(struct ndf *ndf, const struct ndf_class *ndf_cla
  * Returns: as ndf_init(). */
 MUST_CHECK enum status ndf_init_params(struct ndf *ndf, const struct ndf_class *ndf_class, const double value[]);
 
+/* ndf_init_params_anisotropic - the same with the roughness value[0] along x and sigma_y along y, so that t-family is
+ * anisotropic with any x. Returns: as ndf_init(). */
+MUST_CHECK enum status ndf_init_params_anisotropic(struct ndf *ndf, const struct ndf_class *ndf_class,
+						   const double value[], double sigma_y);
+
 /* ndf_from_pwl - the isotropic piecewise-linear distribution *pwl, which has to outlive *ndf. */
 void ndf_from_pwl(struct ndf *ndf, const struct pwl *pwl);
 
 /* ndf_set_lambda_form - the form of Lambda that ndf_lambda() and ndf_G1() use from now on; exact after ndf_init().
- * Returns: STATUS_OK; STATUS_UNSUPPORTED for a class with nothing but its exact form (not ndf_is_student_t()); STATUS_DOMAIN where gamma is none that the form can do (lambda_form.h). *ndf is untouched then.
- */
+ * Returns: STATUS_OK; STATUS_UNSUPPORTED for a class with nothing but its exact form (not ndf_is_student_t(); pl has
+ *          LAMBDA_TRAPEZOID); STATUS_DOMAIN where gamma is none that the form can do (lambda_form.h). *ndf is untouched
+ *          then. */
 MUST_CHECK enum status ndf_set_lambda_form(struct ndf *ndf, enum lambda_form form);
 
 /* ndf_plain - GGX or Beckmann, into *plain, where a distribution is one of them under another name: the same D

@@ -12,4 +12,5 @@ const struct ndf_class ndf_class_beckmann = {
 	.lambda = beckmann_lambda,
 	.P2 = beckmann_P2,
 	.tilt = beckmann_tilt,
+	.share = beckmann_share,
 };

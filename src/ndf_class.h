@@ -30,6 +30,8 @@ struct ndf_class {
 	double (*P2)(const struct ndf *ndf, double s, double q);
 	/* tan(theta_m) of the share u of normals, in units of sigma; below it lies the share u. NULL for pl. */
 	double (*tilt)(const struct ndf *ndf, double u);
+	/* Its inverse: the share of normals whose tan(theta_m) is below s, in units of sigma. NULL for pl. */
+	double (*share)(const struct ndf *ndf, double s);
 };
 
 /* Parameters that many classes have. */

@@ -109,6 +109,13 @@ static inline double ggx_tilt(const struct ndf *ndf, double u)
 	return sqrt(u / (1.0 - u));
 }
 
+/* GGX: the share below s, the inverse of the above. */
+static inline double ggx_share(const struct ndf *ndf, double s)
+{
+	(void)ndf;
+	return 1.0 / (1.0 + 1.0 / s / s);
+}
+
 /* GGX: P2 = (1 + (q/s)^2)^(-3/2) / (2 s) */
 static inline double ggx_P2(const struct ndf *ndf, double s, double q)
 {
@@ -140,6 +147,13 @@ static inline double beckmann_tilt(const struct ndf *ndf, double u)
 {
 	(void)ndf;
 	return sqrt(-log1p(-u));
+}
+
+/* Beckmann: the share below s, the inverse of the above. */
+static inline double beckmann_share(const struct ndf *ndf, double s)
+{
+	(void)ndf;
+	return -expm1(-s * s);
 }
 
 /* Beckmann: P2 = exp(-(q/s)^2) / (s sqrt(pi)) */

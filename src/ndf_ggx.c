@@ -14,4 +14,5 @@ const struct ndf_class ndf_class_ggx = {
 	.lambda = ggx_lambda,
 	.P2 = ggx_P2,
 	.tilt = ggx_tilt,
+	.share = ggx_share,
 };

@@ -64,6 +64,17 @@ static double gtr_tilt(const struct ndf *ndf, double u)
 	return fmin(sqrt(tan2) / ndf->sigma_x, 1e150 / ndf->sigma_x);
 }
 
+static double gtr_share(const struct ndf *ndf, double s)
+{
+	const double span = log_span(ndf), power = 1.0 - ndf->gamma;
+	const double tangent = s * ndf->sigma_x;
+	const double sin2 = 1.0 / (1.0 + 1.0 / tangent / tangent), cos2 = 1.0 / (1.0 + tangent * tangent);
+	const double x = ndf->sigma_x > 1.0 ? cos2 : sin2;
+	const double log_v = log1p(expm1(span) * x);
+	const double below = span == 0.0 ? x : power == 0.0 ? log_v / span : expm1(power * log_v) / expm1(power * span);
+	return ndf->sigma_x > 1.0 ? 1.0 - below : below;
+}
+
 const struct ndf_class ndf_class_gtr = {
 	.name = "gtr",
 	.n_params = 2,
@@ -81,4 +92,5 @@ const struct ndf_class ndf_class_gtr = {
 	.lambda = smith_quadrature_lambda,
 	.P2 = smith_quadrature_P2,
 	.tilt = gtr_tilt,
+	.share = gtr_share,
 };

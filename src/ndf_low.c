@@ -75,6 +75,15 @@ static double low_tilt(const struct ndf *ndf, double u)
 	return fmin(slope_of(expm1(log_s_below(B, ndf->param[1], u)) / B), 1e150) / ndf->sigma_x;
 }
 
+static double low_share(const struct ndf *ndf, double s)
+{
+	const double B = ndf->param[0], C = ndf->param[1];
+	const double tangent = s * ndf->sigma_x, root = hypot(1.0, tangent);
+	/* v = 1 - cos = tan^2 / (root (1 + root)) */
+	const double v = isinf(tangent) ? 1.0 : tangent / root * (tangent / (1.0 + root));
+	return share(B, C, log1p(B * v)) / share(B, C, log1p(B));
+}
+
 /* B = 2/(C sigma^2): for large C the peak is Beckmann's of roughness sigma. */
 static void low_to_params(struct ndf *ndf)
 {
@@ -116,4 +125,5 @@ const struct ndf_class ndf_class_low = {
 	.lambda = smith_quadrature_lambda,
 	.P2 = smith_quadrature_P2,
 	.tilt = low_tilt,
+	.share = low_share,
 };

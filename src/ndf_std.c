@@ -26,4 +26,5 @@ const struct ndf_class ndf_class_std = {
 	.lambda = student_t_lambda,
 	.P2 = student_t_P2,
 	.tilt = student_t_tilt,
+	.share = student_t_share,
 };

@@ -26,7 +26,7 @@ const struct ndf_class ndf_class_t_family = {
 		   .role = NDF_ROLE_GAMMA,
 		   .min = 1.5,
 		   .max = INFINITY,
-		   .search_min = 2.0001,
+		   .search_min = 2.000002,
 		   .search_max = 1000.0},
 		  {.name = "x", .min = -1e6, .max = 1e6, .min_included = true, .search_min = 2.0, .search_max = 2.0}},
 	.student_t = true,
@@ -37,4 +37,5 @@ const struct ndf_class ndf_class_t_family = {
 	.lambda = student_t_lambda,
 	.P2 = student_t_P2,
 	.tilt = student_t_tilt,
+	.share = student_t_share,
 };

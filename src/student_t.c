@@ -156,3 +156,12 @@ double student_t_tilt(const struct ndf *ndf, double u)
 		return beckmann_tilt(ndf, u);
 	return sqrt(ndf->a * expm1(-log1p(-u) / (ndf->gamma - 1.0)));
 }
+
+double student_t_share(const struct ndf *ndf, double s)
+{
+	if (is_beckmann(ndf))
+		return beckmann_share(ndf, s);
+	const double t = s / sqrt(ndf->a);
+	const double log_v = t > 1e100 ? 2.0 * log(t) : log1p(t * t);
+	return -expm1((1.0 - ndf->gamma) * log_v);
+}

@@ -25,5 +25,6 @@ double student_t_D(const struct ndf *ndf, struct vec3 m);
 double student_t_lambda(const struct ndf *ndf, struct vec3 w);
 double student_t_P2(const struct ndf *ndf, double s, double q);
 double student_t_tilt(const struct ndf *ndf, double u);
+double student_t_share(const struct ndf *ndf, double s);
 
 #endif

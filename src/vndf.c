@@ -2,6 +2,7 @@
 #include "src/vndf.h"
 #include "src/ndf_class.h"
 #include "src/ndf_formulas.h"
+#include "src/student_t.h"
 #include "src/vndf_student.h"
 #include <gsl/gsl_cdf.h>
 #include <stddef.h>
@@ -49,13 +50,50 @@ static double t3_quantile(double u)
 	return u < 0.5 ? -t3_tail_quantile(u) : t3_tail_quantile(1.0 - u);
 }
 
-/* The paper's rational fit of the same quantile. */
+/* The paper's rational fit of the same quantile at u = (1 + v)/2. */
+struct t3_fraction {
+	double top, bottom;
+};
+
+static struct t3_fraction t3_fraction(double v)
+{
+	return (struct t3_fraction){v * (0.46341 + v * (-0.73369 + v * 0.27385)),
+				    0.597999 + v * (-1.0 + v * (0.309420 + v * 0.093073))};
+}
+
+static double t3_fit(double v)
+{
+	const struct t3_fraction fit = t3_fraction(v);
+	return fit.top / fit.bottom;
+}
+
 static double t3_quantile_fit(double u)
 {
-	const double v = fabs(2.0 * u - 1.0);
-	const double z =
-		v * (0.46341 + v * (-0.73369 + v * 0.27385)) / (0.597999 + v * (-1.0 + v * (0.309420 + v * 0.093073)));
+	const double z = t3_fit(fabs(2.0 * u - 1.0));
 	return u > 0.5 ? z : -z;
+}
+
+/* Density of the fit's slopes by that of the true ones, (2/pi) (1 + z^2)^-2. The fit rises: v by bisection. */
+static double t3_fit_ratio(double z)
+{
+	double low = 0.0, high = 1.0;
+	z = fabs(z);
+	if (z >= t3_fit(1.0))
+		return 0.0;
+	for (int i = 0; i < 60; i++) {
+		const double v = 0.5 * (low + high);
+		if (t3_fit(v) < z)
+			low = v;
+		else
+			high = v;
+	}
+	const double v = 0.5 * (low + high);
+	const struct t3_fraction fit = t3_fraction(v);
+	const double top_slope = 0.46341 + v * (-2.0 * 0.73369 + v * 3.0 * 0.27385);
+	const double bottom_slope = -1.0 + v * (2.0 * 0.309420 + v * 3.0 * 0.093073);
+	const double slope = (top_slope - fit.top / fit.bottom * bottom_slope) / fit.bottom; /* dz/dv, v = 2 u - 1 */
+	const double root = 1.0 + z * z;
+	return 0.25 * M_PI * root * root / slope;
 }
 
 /* With x = tan(psi) the CDF of x is (sin(theta + psi) + cos_i)/(1 + cos_i). So sin(theta + psi) is k = u1 (1 + cos_i) -
@@ -136,15 +174,21 @@ bool vndf_supports(const struct ndf *ndf)
 	return ndf->class->student_t || ndf->class == &ndf_class_ggx || ndf->class == &ndf_class_beckmann;
 }
 
+bool vndf_rational_supports(const struct ndf *ndf)
+{
+	return vndf_supports(ndf) && ndf->gamma == 2.0;
+}
+
 /* All but Beckmann: what differs is of the order 1/gamma. */
 #define GAMMA_BECKMANN 1e16
 
 /* Student-t slopes at gamma = 2 are those of GGX, and where they have no K they are Beckmann's. From below the horizon the
  * latter are a difference of two terms: the solver has that. */
-static struct scaled_slopes sample_slopes(const struct ndf *ndf, double cos_i, double sin_i, double u1, double u2)
+static struct scaled_slopes sample_slopes(const struct ndf *ndf, double cos_i, double sin_i, double u1, double u2,
+					  enum vndf_ggx how)
 {
 	if (ndf->gamma == 2.0)
-		return ggx_slopes(cos_i, sin_i, u1, u2, VNDF_GGX_EXACT);
+		return ggx_slopes(cos_i, sin_i, u1, u2, how);
 	if (ndf->K > 0.0)
 		return std_slopes(ndf->gamma, ndf->K, cos_i, sin_i, u1, u2);
 	if (cos_i < 0.0)
@@ -152,20 +196,30 @@ static struct scaled_slopes sample_slopes(const struct ndf *ndf, double cos_i, d
 	return beckmann_slopes(cos_i, sin_i, u1, u2);
 }
 
-struct vec3 vndf_sample_inside(const struct ndf *ndf, struct vec3 wi, double u1, double u2)
+/* wi as unit roughness sees it. */
+struct stretched {
+	double cos_i, sin_i, cos_phi, sin_phi;
+};
+
+static struct stretched stretch(double sigma_x, double sigma_y, struct vec3 wi)
+{
+	const double x = sigma_x * wi.x, y = sigma_y * wi.y;
+	const double r = sqrt(x * x + y * y);
+	const double length = sqrt(r * r + wi.z * wi.z);
+	return (struct stretched){wi.z / length, r / length, r > 0.0 ? x / r : 1.0, r > 0.0 ? y / r : 0.0};
+}
+
+static struct vec3 sample(const struct ndf *ndf, struct vec3 wi, double u1, double u2, enum vndf_ggx how)
 {
 	if (!vndf_supports(ndf) || isnan(wi.x + wi.y + wi.z) || (wi.z < 0.0 && !(vndf_area(ndf, wi) > 0.0)))
 		return (struct vec3){NAN, NAN, NAN};
 	wi = ndf_to_axes(ndf, wi);
 	wi.z = fabs(wi.z) < NDF_COS_MIN ? NDF_COS_MIN : wi.z;
 	const double sigma_x = ndf->sigma_x / ndf->stretch, sigma_y = ndf->sigma_y / ndf->stretch; /* of std */
-	const double x = sigma_x * wi.x, y = sigma_y * wi.y;
-	const double r = sqrt(x * x + y * y);
-	const double length = sqrt(r * r + wi.z * wi.z);
-	const double cos_phi = r > 0.0 ? x / r : 1.0, sin_phi = r > 0.0 ? y / r : 0.0;
-	const struct scaled_slopes s = sample_slopes(ndf, wi.z / length, r / length, inside(u1), inside(u2));
-	struct vec3 m = vec3_unit((struct vec3){-sigma_x * (cos_phi * s.x - sin_phi * s.y),
-						-sigma_y * (sin_phi * s.x + cos_phi * s.y), s.one});
+	const struct stretched seen = stretch(sigma_x, sigma_y, wi);
+	const struct scaled_slopes s = sample_slopes(ndf, seen.cos_i, seen.sin_i, inside(u1), inside(u2), how);
+	struct vec3 m = vec3_unit((struct vec3){-sigma_x * (seen.cos_phi * s.x - seen.sin_phi * s.y),
+						-sigma_y * (seen.sin_phi * s.x + seen.cos_phi * s.y), s.one});
 	m.z = ndf_cos(m);
 	/* The rounding of m can turn the very last bit of wi.m. */
 	const double cos_d = vec3_dot(wi, m);
@@ -173,6 +227,11 @@ struct vec3 vndf_sample_inside(const struct ndf *ndf, struct vec3 wi, double u1,
 		m = vec3_sub(m, vec3_scale(wi, 2.0 * cos_d));
 	m.z = ndf_cos(m);
 	return ndf_from_axes(ndf, m);
+}
+
+struct vec3 vndf_sample_inside(const struct ndf *ndf, struct vec3 wi, double u1, double u2)
+{
+	return sample(ndf, wi, u1, u2, VNDF_GGX_EXACT);
 }
 
 struct vec3 vndf_sample(const struct ndf *ndf, struct vec3 wi, double u1, double u2)
@@ -193,6 +252,62 @@ double vndf_pdf_inside(const struct ndf *ndf, struct vec3 wi, struct vec3 m)
 {
 	const double cos_d = vec3_dot(wi, m);
 	return cos_d <= 0.0 ? 0.0 : cos_d * ndf_D(ndf, m) / vndf_area(ndf, wi);
+}
+
+struct vec3 vndf_rational_sample(const struct ndf *ndf, struct vec3 wi, double u1, double u2)
+{
+	if (!vndf_rational_supports(ndf))
+		return (struct vec3){NAN, NAN, NAN};
+	wi.z = wi.z < 0.0 ? 0.0 : wi.z;
+	return sample(ndf, wi, u1, u2, VNDF_GGX_FIT);
+}
+
+/* The slopes of m along and across wi, at unit roughness. */
+static struct vndf_slopes slopes_seen(const struct ndf *ndf, struct vec3 wi, struct vec3 m, struct stretched *seen)
+{
+	const double sigma_x = ndf->sigma_x / ndf->stretch, sigma_y = ndf->sigma_y / ndf->stretch;
+	wi = ndf_to_axes(ndf, wi);
+	wi.z = wi.z < NDF_COS_MIN ? NDF_COS_MIN : wi.z;
+	m = ndf_to_axes(ndf, m);
+	*seen = stretch(sigma_x, sigma_y, wi);
+	const double p = -m.x / ndf_cos(m) / sigma_x, q = -m.y / ndf_cos(m) / sigma_y;
+	return (struct vndf_slopes){seen->cos_phi * p + seen->sin_phi * q, seen->cos_phi * q - seen->sin_phi * p};
+}
+
+/* Beckmann: int (cos_i - x' sin_i) exp(-x'^2)/sqrt(pi) up to x <= cot. */
+static double beckmann_seen_below(const struct stretched *seen, double x)
+{
+	return 0.5 * seen->cos_i * erfc(-x) + 0.5 * seen->sin_i * exp(-x * x) / sqrt(M_PI);
+}
+
+void vndf_cdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m, double *along, double *across)
+{
+	*along = *across = NAN;
+	if (!vndf_supports(ndf) || isnan(wi.x + wi.y + wi.z + m.x + m.y + m.z))
+		return;
+	struct stretched seen;
+	const struct vndf_slopes s = slopes_seen(ndf, wi, m, &seen);
+	if (ndf->gamma != 2.0 && ndf->K == 0.0) {
+		const double cot = fmin(seen.cos_i / seen.sin_i, 1e100);
+		*along = fmin(beckmann_seen_below(&seen, fmin(s.x, cot)) / beckmann_seen_below(&seen, cot), 1.0);
+		*across = 0.5 * erfc(-s.y);
+		return;
+	}
+	const double a = ndf->gamma - 1.0, K = student_t_K(ndf->gamma), scale = sqrt(a);
+	const struct student slopes_along = {ndf->gamma - 0.5, K, seen.cos_i,
+					     seen.sin_i > 1e-160 ? scale * seen.sin_i : 0.0};
+	const struct student slopes_across = {ndf->gamma, a * M_1_PI / K, 1.0, 0.0};
+	*along = student_cdf(&slopes_along, s.x / scale);
+	*across = student_cdf(&slopes_across, s.y / hypot(scale, s.x));
+}
+
+double vndf_rational_pdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m)
+{
+	struct stretched seen;
+	if (!vndf_rational_supports(ndf))
+		return NAN;
+	const struct vndf_slopes s = slopes_seen(ndf, wi, m, &seen);
+	return vndf_pdf(ndf, wi, m) * t3_fit_ratio(s.y / hypot(1.0, s.x));
 }
 
 double vndf_pdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m)

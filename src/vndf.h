@@ -45,6 +45,23 @@ double vndf_pdf_inside(const struct ndf *ndf, struct vec3 wi, struct vec3 m);
  * |wi.z| = 1e-100 on. */
 double vndf_area(const struct ndf *ndf, struct vec3 wi);
 
+/* vndf_cdf - where a normal stands among those visible from wi: the CDFs of its two slopes at unit roughness, which are
+ * what vndf_sample() inverts [STD supplement, section 7.1].
+ *     *along    of the slope x along wi, as the facets are seen       C_wi(x)
+ *     *across   of the slope y across wi, among facets of that x     C(y|x)
+ * Both are uniform and independent when m has the density D_wi; the map of all but beckmann is (u1, u2) itself.
+ * Given:   unit vectors; wi.z <= 0 counts as grazing incidence, m.z <= 0 as the horizon
+ * Returns: absolute error 1e-13; NaN where vndf_supports() says no, and for NaN. */
+void vndf_cdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m, double *along, double *across);
+
+/* vndf_rational_sample, vndf_rational_pdf - visible normals of ggx, and of what is ggx at gamma = 2, with the slope across
+ * wi by VNDF_GGX_FIT below; and the density of just those, which is D_wi times the ratio of the two densities of that
+ * slope: within 1 % over most of them, 0 beyond the end of the fit.
+ * Given and returns: as vndf_sample() and vndf_pdf(). */
+bool vndf_rational_supports(const struct ndf *ndf);
+struct vec3 vndf_rational_sample(const struct ndf *ndf, struct vec3 wi, double u1, double u2);
+double vndf_rational_pdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m);
+
 /* The two slopes at unit roughness. */
 struct vndf_slopes {
 	double x, y;

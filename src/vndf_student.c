@@ -194,26 +194,46 @@ static double quantile_below(const struct student *student, double u)
 	return side_solve(&side, fmax(by_moment, by_line));
 }
 
+/* What is seen on the right, moment, total: the masses of the whole. */
+struct masses {
+	struct side right;
+	double moment, total;
+};
+
+static struct masses masses_of(const struct student *student)
+{
+	const double slope_max = student->s > 0.0 ? student->c / student->s : INFINITY;
+	const double t_max = t_of_slope(slope_max);
+	struct masses masses = {.right = {student, -1.0, 0.0, slope_max, t_max, 0.0, 0.0}};
+	if (student->s > 0.0) {
+		const struct point end = point_at(student->p, t_max);
+		masses.moment = 0.5 * student->s * student->k / (student->p - 1.0);
+		masses.right.excess = student->s * upper_moment(student, &end) - student->c * upper_tail(student, &end);
+	}
+	masses.total = student->c + masses.right.excess;
+	return masses;
+}
+
 double student_quantile(const struct student *student, double u)
 {
 	if (student->c < 0.0)
 		return -quantile_below(student, u);
-	const double p = student->p;
-	const double slope_max = student->s > 0.0 ? student->c / student->s : INFINITY;
-	const double t_max = t_of_slope(slope_max);
-	struct side right = {student, -1.0, 0.0, slope_max, t_max, 0.0, 0.0};
-	double moment = 0.0;
-	if (student->s > 0.0) {
-		const struct point end = point_at(p, t_max);
-		moment = 0.5 * student->s * student->k / (p - 1.0);
-		right.excess = student->s * upper_moment(student, &end) - student->c * upper_tail(student, &end);
-	}
-	const double total = student->c + right.excess;
-	const double middle = 0.5 * student->c + moment;
+	struct masses masses = masses_of(student);
+	const double total = masses.total, middle = 0.5 * student->c + masses.moment;
 	if (u * total <= middle)
-		return -left_quantile(student, u * total, moment);
-	right.target = (1.0 - u) * total;
+		return -left_quantile(student, u * total, masses.moment);
+	masses.right.target = (1.0 - u) * total;
 	/* Of a weight that ends close to 0 rounding leaves nothing on that side. */
 	const double half = total - middle;
-	return right_quantile(student, &right, right.target < half ? right.target / half : 1.0);
+	return right_quantile(student, &masses.right, masses.right.target < half ? masses.right.target / half : 1.0);
+}
+
+double student_cdf(const struct student *student, double X)
+{
+	const struct masses masses = masses_of(student);
+	const struct point at = point_at(student->p, t_of_slope(fabs(X)));
+	if (X > 0.0)
+		return X < masses.right.slope_max ? 1.0 - side_mass(&masses.right, &at) / masses.total : 1.0;
+	const struct side left = {student, 1.0, 0.0, INFINITY, INFINITY, 0.0, 0.0};
+	return side_mass(&left, &at) / masses.total;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* vndf_student - inverse CDF of Student-t slopes, plain or as seen from a direction. Private to src/.
+/* vndf_student - CDF and inverse CDF of Student-t slopes, plain or as seen from a direction. Private to src/.
  *
  * The slope X has density k (1 + X^2)^-p, p > 1 (a Student t with 2p - 1 degrees of freedom, scaled). Seen from a
  * direction it is weighted by the facet's projected area (c - s X)+, s >= 0; c < 0 is a direction below the horizon, s > 0.
@@ -19,5 +19,8 @@ struct student {
  *          share of X < c/s that is seen from -c over that seen from c: more the steeper the direction. Where rounding
  *          leaves nothing to be seen, that w. */
 double student_quantile(const struct student *student, double u);
+
+/* student_cdf - the CDF itself at the slope X, for c >= 0: absolute error 1e-14, 1 from X = c/s on. */
+double student_cdf(const struct student *student, double X);
 
 #endif

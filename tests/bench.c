@@ -106,7 +106,7 @@ static volatile double sink;
 static void bench_kernel(const struct sample_set *table, const struct fit_options *options, const char *ndf,
 			 int threads)
 {
-	const struct shape shape = {0.2, 1.7, 1.5, 0, 0, 0};
+	const struct shape shape = {.sigma = 0.2, .gamma = 1.7, .ior = 1.5};
 	double t_stream[REPEATS], t_pass[REPEATS], t_curved[REPEATS], t_stream_geo[REPEATS], t_model[REPEATS];
 	struct objective o;
 
@@ -118,13 +118,13 @@ static void bench_kernel(const struct sample_set *table, const struct fit_option
 	for (int r = 0; r < REPEATS; r++) {
 		double t = search_clock();
 
-		sink = (double)stream_all(table, o.s, false, threads);
+		sink = (double)stream_all(table, o.term[1], false, threads);
 		t_stream[r] = search_clock() - t, t = search_clock();
 		sink = pass_all(&o, &g1, false, 0, threads);
 		t_pass[r] = search_clock() - t, t = search_clock();
 		sink = pass_all(&o, &g1, false, 0.1, threads);
 		t_curved[r] = search_clock() - t, t = search_clock();
-		sink = (double)stream_all(table, o.s, true, threads);
+		sink = (double)stream_all(table, o.term[1], true, threads);
 		t_stream_geo[r] = search_clock() - t, t = search_clock();
 		sink = pass_all(&o, &g1, true, 0, threads);
 		t_model[r] = search_clock() - t;

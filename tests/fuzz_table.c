@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The first byte chooses what is done with a result table: its models are evaluated, as by eval --from; it is compared,
- * as by compare; merged; or resumed. Below 128, the rest of the bytes are the file. From 128 on they are lines that each
- * change a cell of a sound row: the first byte is the column, what follows is the new content; an empty line begins the
- * next row. */
+ * as by compare; merged; or resumed. Below 128, the rest of the bytes are the file. From 128 on they are lines that
+ * each change a cell of a sound row: the first byte is the column, what follows is the new content; an empty line
+ * begins the next row. */
 #include "fit/cli/report.h"
 #include "fit/commands/commands.h"
 #include "fit/results/result.h"
@@ -128,7 +128,8 @@ static void run_command(enum command command, const char *form)
 	const int code = (command == COMMAND_MERGE ? cmd_merge : cmd_compare)(argc, argv, &cancel);
 	capture_end(&err, stderr);
 	capture_end(&out, stdout);
-	PROMISE(code == EXIT_DONE || code == EXIT_FAILED);
+	/* EXIT_USAGE: the file is a measurement, whatever its name. */
+	PROMISE(code == EXIT_DONE || code == EXIT_FAILED || code == EXIT_USAGE);
 	PROMISE(code == EXIT_DONE ? err.size == 0 : is_message(err.text));
 	PROMISE((code == EXIT_DONE) == (out.size > 0));
 	PROMISE(code != EXIT_DONE || !form || strcmp(form, "--json") || json_is_valid(out.text));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* fuzz_text - a text format of measurements under attack. The first byte chooses the quantity and what becomes of colours out of
- * gamut; the rest is the file. */
+/* fuzz_text - a text format of measurements under attack. The first byte chooses the quantity and what becomes of
+ * colours out of gamut; the rest is the file. */
 #ifndef FUZZ_TEXT_H
 #define FUZZ_TEXT_H
 

@@ -983,7 +983,7 @@ static void sweep_shapes(const struct geometry *g, const struct sample_set *tabl
 				abort();
 			for (int i = 0; i < COUNT(sigma) * COUNT(gamma); i += d == 0 ? 1 : 4) {
 				const struct shape shape = {
-					sigma[i % COUNT(sigma)], gamma[i / COUNT(sigma)], 1.5, 0, 0, 0};
+					.sigma = sigma[i % COUNT(sigma)], .gamma = gamma[i / COUNT(sigma)], .ior = 1.5};
 				struct cook_torrance model = {
 					.gaf = options->criterion.gaf, .fresnel = options->fresnel, .n = 1.5};
 				if (shape_ndf(&shape, o.class, LAMBDA_EXACT, &model.ndf) != STATUS_OK ||
@@ -1007,7 +1007,7 @@ static void sweep_scales(const struct geometry *g, const struct fit_options *opt
 		struct sample_set table;
 		struct objective o;
 		struct linear linear;
-		const struct shape shape = {0.1, 3.0, 1.5, 0, 0, 0};
+		const struct shape shape = {.sigma = 0.1, .gamma = 3.0, .ior = 1.5};
 		for (size_t e = 0; e < measurement_count(measurement); e++)
 			for (int c = 0; c < MERL_CHANNELS; c++)
 				measurement->value[c][e] = scale[i];

@@ -748,7 +748,7 @@ static void a_reader_that_is_gone_ends_it_quietly(void **state)
 static void output_into_head_ends_silently(void **state)
 {
 	(void)state;
-	static const char *const commands[] = {"a.binary a.binary " CHEAP, "ndf ggx --sigma 0.1 --theta 0:90:0.01",
+	static const char *const commands[] = {("a.binary a.binary " CHEAP), "ndf ggx --sigma 0.1 --theta 0:90:0.01",
 					       "--help", "sample ggx --sigma 0.1 --count 20000"};
 	for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
 		char *whole;
@@ -801,6 +801,18 @@ static void compare_summarises_tables(void **state)
 	write_text("broken.csv", "material,ndf,error\na,std\n");
 	stdfit("compare broken.csv");
 	expect_error(1, "'broken.csv' line 2: expected 3 fields, found 2");
+	/* Where nothing could be fitted there is a line on it and no table; one file beside others is an empty line of theirs. */
+	write_text("failed.csv", "material,ndf,error,options,status\na,std,,o,failed: so it was\n");
+	stdfit("compare failed.csv");
+	expect_error(1, "'failed.csv' has no fits to compare");
+	assert_string_equal(last.out, "");
+	stdfit("compare bad/empty.binary " CHEAP " -o nothing.csv");
+	expect_error(1, "cannot read 'bad/empty.binary'");
+	assert_string_equal(last.out, "");
+	assert_int_equal(access("nothing.csv", F_OK), -1);
+	stdfit("compare a.binary bad/empty.binary " CHEAP);
+	expect_error(1, "cannot read 'bad/empty.binary'");
+	expect_out("\nempty,,,,,\n");
 	stdfit("compare a.binary " CHEAP);
 	expect_code(0);
 	expect_out("material,error_ggx,error_beckmann,winner,gain_over_ggx,gain_over_beckmann\na,");

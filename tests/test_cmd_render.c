@@ -232,7 +232,54 @@ static void wrong_usage_is_refused(void **state)
 	shell("cmp light.pfm light.bak");
 	expect_code(0);
 	stdfit("render");
-	expect_error(2, "expected PATH...");
+	expect_error(2, "expected PATH..., found nothing; or a model");
+	stdfit("render " MODEL);
+	expect_error(2, "a model without a measurement needs -o FILE.png");
+	stdfit("render " MODEL " --table -o no.pfm");
+	expect_error(2, "--table means nothing without a measurement");
+	stdfit("render " MODEL " --difference -o no.pfm");
+	expect_error(2, "--difference means nothing without a measurement");
+	stdfit("render --from fits.csv -o no.pfm");
+	expect_error(2, "or --from FILE.json");
+	stdfit("render " MODEL " " QUICK " -o no/such/place.pfm");
+	expect_error(1, "no/such/place.pfm");
+	stdfit("render " MODEL " --light 0,0,0 -o no.pfm");
+	expect_error(2, "--light");
+	assert_false(is_there("no.pfm"));
+}
+
+/* The sphere alone is the one that stands beside the table's. */
+static void a_model_needs_no_measurement(void **state)
+{
+	(void)state;
+	stdfit("render m.binary " MODEL " " QUICK " -o beside.pfm");
+	expect_code(0);
+	stdfit("render " MODEL " " QUICK " -o alone.pfm");
+	expect_code(0);
+	assert_string_equal(last.out, "");
+	assert_string_equal(last.err, "");
+	struct image beside = read_picture("beside.pfm"), alone = read_picture("alone.pfm");
+	check_between(alone.width, 24, 2 * 24, "width");
+	check_between(alone.height, 24, 3 * 24, "height");
+	for (int y = -8; y < 8; y++)
+		for (int x = -8; x < 8; x++)
+			for (int c = 0; c < 3; c++)
+				check_abs((double)image_at(&alone, MIDDLE_X + x, MIDDLE_Y + y)[c],
+					  (double)image_at(&beside, MIDDLE_X + 24 + 4 + x, MIDDLE_Y + y)[c], 0,
+					  "pixel");
+	check_between((double)image_at(&alone, MIDDLE_X, MIDDLE_Y)[0], 0.05, 5, "light");
+	image_free(&beside);
+	image_free(&alone);
+	/* Of an exported model, and one that differs along x and y. */
+	stdfit("export " MODEL " --format json -o model.json");
+	expect_code(0);
+	stdfit("render --from model.json " QUICK " -o json.pfm");
+	expect_code(0);
+	shell("cmp alone.pfm json.pfm");
+	expect_code(0);
+	stdfit("render --ndf ggx --sigma 0.1,0.5 --angle 20 --kd 0.1 --ks 1 " QUICK " -o brushed.pfm");
+	expect_code(0);
+	assert_true(is_there("brushed.pfm"));
 }
 
 static void one_bad_file_costs_only_itself(void **state)
@@ -379,6 +426,7 @@ int main(void)
 		cmocka_unit_test(fits_and_tables_make_sheets),
 		cmocka_unit_test(light_comes_from_names_maps_and_points),
 		cmocka_unit_test(wrong_usage_is_refused),
+		cmocka_unit_test(a_model_needs_no_measurement),
 		cmocka_unit_test(one_bad_file_costs_only_itself),
 		cmocka_unit_test(files_are_those_that_were_fitted),
 		cmocka_unit_test(glass_is_shown_without_a_file),

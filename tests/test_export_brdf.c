@@ -263,7 +263,7 @@ static void shader_is_the_model_for_every_G_and_F(void **state)
 	make_pwl(&pwl);
 	for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
 		for (enum gaf gaf = 0; gaf < GAF_COUNT; gaf++)
-			for (enum fresnel fresnel = 0; fresnel < FRESNEL_COUNT; fresnel++) {
+			for (enum fresnel fresnel = 0; fresnel < FRESNEL_F82; fresnel++) {
 				struct ndf ndf;
 				char label[100];
 
@@ -438,6 +438,26 @@ static void ranges_hold_the_value(void **state)
 	compare(&model, "values beyond the usual");
 }
 
+static void richer_models_are_refused(void **state)
+{
+	struct cook_torrance model = make_model("ggx", 0.2, 2, 1.5);
+	struct export export;
+	struct error error;
+	const struct fit_options fit = fit_options_default();
+
+	(void)state;
+	for (int i = 0; i < 3; i++) {
+		struct cook_torrance rich = model;
+		if (i == 0)
+			rich.fresnel = FRESNEL_F82;
+		else
+			memcpy(i == 1 ? rich.kg : rich.ks_second, (double[]){0.1, 0, 0}, sizeof rich.kg);
+		rich.second = model.ndf;
+		const struct export_source source = {.model = &rich, .fit = &fit};
+		assert_int_equal(export_prepare(&export, EXPORT_BRDF, &source, &error), STATUS_UNSUPPORTED);
+	}
+}
+
 /* Constants that no float holds are refused, and nothing promised. */
 static void out_of_range_is_refused(void **state)
 {
@@ -495,7 +515,7 @@ static void glslang_takes_it(void **state)
 	close(fd);
 	snprintf(command, sizeof command, "glslangValidator -S frag %s >%s.out", path, path);
 	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-		for (enum fresnel fresnel = 0; fresnel < FRESNEL_COUNT; fresnel++) {
+		for (enum fresnel fresnel = 0; fresnel < FRESNEL_F82; fresnel++) {
 			struct cook_torrance model = make_model(names[i], 0.2, 1.7, 1.5);
 			model.fresnel = fresnel;
 			model.gaf = (enum gaf)(fresnel % GAF_COUNT);
@@ -531,6 +551,7 @@ int main(void)
 		cmocka_unit_test(shader_is_the_model_with_one_term_only),
 		cmocka_unit_test(sliders_give_the_other_model),
 		cmocka_unit_test(ranges_hold_the_value),
+		cmocka_unit_test(richer_models_are_refused),
 		cmocka_unit_test(out_of_range_is_refused),
 		cmocka_unit_test(glslang_takes_it),
 	};

@@ -105,7 +105,6 @@ static void read_numbers(const struct xml *input, double x[3])
 static void check_input(const struct xml *document, const struct definition *definition, const struct xml *input)
 {
 	const struct input *known = definition->input;
-	double x[3];
 
 	while (known->name && strcmp(known->name, xml_get(input, "name")) != 0)
 		known++;
@@ -115,12 +114,16 @@ static void check_input(const struct xml *document, const struct definition *def
 	assert_string_equal(xml_get(input, "type"), known->type);
 	assert_int_equal(input->n_attributes, 3);
 	if (numbers_of(known->type)) {
+		double x[3];
+
 		read_numbers(input, x);
 		return;
 	}
 	const struct xml *node = xml_named(document, xml_get(input, "nodename"));
-	if (!node)
+	if (!node) {
 		fail_msg("no node '%s'", xml_get(input, "nodename"));
+		return;
+	}
 	assert_string_equal(xml_get(node, "type"), known->type);
 }
 
@@ -306,6 +309,9 @@ static struct cook_torrance given(double sigma, enum fresnel fresnel)
 	model.gaf = GAF_CORRELATED;
 	model.fresnel = fresnel;
 	model.k = 3.25;
+	for (int c = 0; c < 3 && fresnel == FRESNEL_F82; c++)
+		memcpy(model.reflectance[c], (double[]){0.2 + 0.1 * c, 0.5 - 0.05 * c, 0.9},
+		       sizeof model.reflectance[c]);
 	return model;
 }
 
@@ -337,8 +343,10 @@ static void nodes_are_the_model(void **state)
 		char arguments[200];
 
 		snprintf(arguments, sizeof arguments, LOBE "--ndf ggx --sigma 0.23 --gaf correlated --fresnel %s %s %s",
-			 fresnel_name(fresnel), fresnel == FRESNEL_NONE ? "" : "--ior 1.61",
-			 fresnel == FRESNEL_CONDUCTOR ? "--k 3.25" : "");
+			 fresnel_name(fresnel), fresnel_has_ior(fresnel) ? "--ior 1.61" : "",
+			 fresnel == FRESNEL_CONDUCTOR ? "--k 3.25"
+			 : fresnel == FRESNEL_F82     ? "--f0 0.2,0.3,0.4 --f82 0.5,0.45,0.4 --f90 0.9"
+						      : "");
 		export_it(arguments);
 		assert_memory_equal(last.out, "<!-- exact: the model itself", 28);
 		expect_nodes(&model);

@@ -143,7 +143,7 @@ static void options_leave_out_what_they_say(void **state)
 	measurement_free(&measurement);
 }
 
-/* hyper-cauchy is STD with another sigma, t-family with gamma above 2 nearly contains GGX, at sigmas beyond 4; random starts
+/* hyper-cauchy is STD with another sigma, t-family with gamma above 2 all but contains GGX, at sigmas beyond 4; random starts
  * only add to the search. */
 static void the_family_of_std_ends_where_std_does(void **state)
 {
@@ -160,7 +160,7 @@ static void the_family_of_std_ends_where_std_does(void **state)
 	options.n_ndf = 4;
 	run_fit(&measurement, &options, r);
 	check_rel(r[1].error, r[0].error, 1e-8, "hyper-cauchy");
-	check_between(r[3].error / r[2].error, 0, 1.0002, "t-family above GGX");
+	check_between(r[3].error / r[2].error, 0, 1 + 4e-6, "t-family above GGX");
 	more.starts = 3;
 	run_fit(&measurement, &more, &again);
 	assert_true(again.error <= r[3].error);

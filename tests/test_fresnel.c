@@ -120,7 +120,7 @@ static void f82_has_its_three_reflectances(void **state)
 static void names_and_values_are_inverse(void **state)
 {
 	(void)state;
-	const char *const want[FRESNEL_COUNT] = {"dielectric", "schlick", "conductor", "none"};
+	const char *const want[FRESNEL_COUNT] = {"dielectric", "schlick", "conductor", "none", "f82"};
 	for (int i = 0; i < FRESNEL_COUNT; i++) {
 		enum fresnel found = FRESNEL_COUNT;
 		assert_string_equal(fresnel_name((enum fresnel)i), want[i]);

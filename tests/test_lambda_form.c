@@ -199,6 +199,7 @@ static void forms_outside_their_domain_are_refused(void **state)
 		{LAMBDA_2F1, 1.1e5},        {LAMBDA_2F1, INFINITY},      {LAMBDA_INTEGER, 2.5},
 		{LAMBDA_INTEGER, 16.0},     {LAMBDA_INTEGER, INFINITY},  {LAMBDA_INTEGER, 3.0000000000000004},
 		{LAMBDA_HALF_INTEGER, 3.0}, {LAMBDA_HALF_INTEGER, 16.5}, {LAMBDA_FORM_COUNT, 3.0},
+		{LAMBDA_TRAPEZOID, 3.0},
 	};
 	for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
 		struct ndf ndf = std_make(0.3, bad[i].gamma, LAMBDA_EXACT);
@@ -238,6 +239,10 @@ static void names_and_forms_are_inverse(void **state)
 		assert_int_equal(lambda_form_find(want[i], &found), STATUS_OK);
 		assert_int_equal(found, i);
 	}
+	assert_int_equal(lambda_form_find("trapezoid", &found), STATUS_OK);
+	assert_int_equal(found, LAMBDA_TRAPEZOID);
+	assert_string_equal(lambda_form_name(LAMBDA_TRAPEZOID), "trapezoid");
+	found = LAMBDA_RATIONAL;
 	assert_int_equal(lambda_form_find("2F1", &found), STATUS_DOMAIN);
 	assert_int_equal(lambda_form_find(NULL, &found), STATUS_DOMAIN);
 	assert_int_equal(found, LAMBDA_RATIONAL);

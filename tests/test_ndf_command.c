@@ -2,19 +2,44 @@
 /* stdfit ndf and stdfit sample, through their CSV: golden rows from standard input, the numbers of the library to the
  * bit, samples against their density and their weights against the albedo. Runs $STDFIT or build/stdfit. */
 #include "chi_square.h"
+#include "fit/search/free_form.h"
 #include "run_program.h"
 #include "src/energy.h"
+#include "src/ndf_cdf.h"
 #include "src/ndf_slopes.h"
 #include "src/pwl.h"
+#include "src/sampling.h"
 #include "src/vndf.h"
 #include <jansson.h>
 
-enum { IN_NAME, IN_D, IN_P22, IN_P2, IN_LAMBDA, IN_G1, IN_PDF, IN_VISIBLE, IN_WEIGHT, IN_THETA, IN_COLUMNS };
+enum {
+	IN_NAME,
+	IN_D,
+	IN_P22,
+	IN_P2,
+	IN_LAMBDA,
+	IN_G1,
+	IN_PDF,
+	IN_VISIBLE,
+	IN_WEIGHT,
+	IN_THETA,
+	IN_CDF,
+	IN_CDF_PHI,
+	IN_CDF_THETA,
+	IN_VISIBLE_CDF,
+	IN_ACROSS_CDF,
+	IN_MOMENT_2,
+	IN_MOMENT_4,
+	IN_KURTOSIS,
+	IN_COLUMNS
+};
 
 static const struct csv_column ndf_columns[IN_COLUMNS] = {
-	{"ndf", false},           {"D", true},     {"P22", true}, {"P2", true},
-	{"Lambda", true},         {"G1", true},    {"pdf", true}, {"visible_pdf", true},
-	{"visible_weight", true}, {"theta", true},
+	{"ndf", false},           {"D", true},           {"P22", true},        {"P2", true},
+	{"Lambda", true},         {"G1", true},          {"pdf", true},        {"visible_pdf", true},
+	{"visible_weight", true}, {"theta", true},       {"cdf", true},        {"cdf_phi", true},
+	{"cdf_theta", true},      {"visible_cdf", true}, {"across_cdf", true}, {"moment_2", true},
+	{"moment_4", true},       {"kurtosis", true},
 };
 
 static char *top; /* of the repository */
@@ -169,6 +194,147 @@ static void printed_values_are_those_of_the_library(void **state)
 	}
 }
 
+/* CDFs and moments, of the azimuth of incidence that was asked for. */
+static void cumulative_values_are_those_of_the_library(void **state)
+{
+	const struct vec3 wi = vec3_from_spherical_deg(35, -70);
+	struct ndf ndf;
+
+	(void)state;
+	assert_int_equal(ndf_init(&ndf, ndf_find("std"), 0.2, 0.5, 4), STATUS_OK);
+	stdfit("ndf std --sigma 0.2,0.5 --gamma 4 --theta 0:90:5 --phi 33 --theta-i 35 --phi-i -70");
+	expect_code(0);
+	struct csv_table table = ndf_output();
+	for (size_t row = 0; row < table.n_rows; row++) {
+		const double radians = M_PI / 180, theta = 5 * (double)row * radians, phi = 33 * radians;
+		const struct vec3 m = vec3_from_spherical_deg(5 * (double)row, 33);
+		double along, across, moment;
+
+		same(&table, row, IN_VISIBLE, vndf_pdf(&ndf, wi, m));
+		same(&table, row, IN_CDF, ndf_cdf(&ndf, theta, phi));
+		same(&table, row, IN_CDF_PHI, ndf_cdf_phi(&ndf, phi));
+		same(&table, row, IN_CDF_THETA, ndf_cdf_theta(&ndf, theta, phi));
+		vndf_cdf(&ndf, wi, m, &along, &across);
+		same(&table, row, IN_VISIBLE_CDF, along);
+		same(&table, row, IN_ACROSS_CDF, across);
+		assert_int_equal(ndf_moment(&ndf, phi, 2, &moment), STATUS_OK);
+		same(&table, row, IN_MOMENT_2, moment);
+		assert_int_equal(ndf_moment(&ndf, phi, 4, &moment), STATUS_OK);
+		same(&table, row, IN_MOMENT_4, moment);
+		same(&table, row, IN_KURTOSIS, 3);
+	}
+	csv_table_free(&table);
+	/* Of gamma 2.5 there is a variance, and no more. */
+	stdfit("ndf std --sigma 0.2 --gamma 2.5 --theta 20");
+	expect_code(0);
+	table = ndf_output();
+	check_rel(cell(&table, 0, IN_MOMENT_2), 0.5 * 0.04 * 1.5 / 0.5, 1e-14, "variance");
+	assert_string_equal(table.row[0][IN_MOMENT_4], "");
+	assert_string_equal(table.row[0][IN_KURTOSIS], "");
+	assert_string_equal(table.row[0][IN_VISIBLE_CDF], "");
+	csv_table_free(&table);
+}
+
+/* Golden moments: B = 1/(sigma^2 (gamma-1)), C = gamma. */
+static void moments_match_golden_rows(void **state)
+{
+	char path[4096];
+	size_t i = 0;
+	FILE *in = fopen("in.csv", "w");
+
+	(void)state;
+	snprintf(path, sizeof path, "%s/tests/golden/moments.csv", top);
+	struct golden golden = golden_open(path, "B,C,nu0,nu2,nu4,nu6,nu8,excess_kurtosis");
+	assert_non_null(in);
+	fputs("ndf,sigma,gamma,theta\n", in);
+	while (golden_next(&golden)) {
+		const double B = golden.value[0], C = golden.value[1];
+
+		fprintf(in, "std,%.17g,%.17g,0\n", sqrt(1 / (B * (C - 1))), C);
+	}
+	assert_int_equal(fclose(in), 0);
+	shell("exec \"$STDFIT\" ndf - <in.csv");
+	expect_code(0);
+	struct csv_table table = ndf_output();
+	golden = golden_open(path, "B,C,nu0,nu2,nu4,nu6,nu8,excess_kurtosis");
+	for (; golden_next(&golden); i++) {
+		check_rel(cell(&table, i, IN_MOMENT_2), golden.value[3], 1e-13, golden.label);
+		check_rel(cell(&table, i, IN_MOMENT_4), golden.value[4], 1e-13, golden.label);
+		check_rel(cell(&table, i, IN_KURTOSIS), golden.value[7], 1e-13, golden.label);
+	}
+	assert_int_equal(table.n_rows, i);
+	csv_table_free(&table);
+}
+
+/* At 90 degrees stands what the values tend to. */
+static void grazing_incidence_is_a_limit(void **state)
+{
+	static const char *const cases[] = {
+		"std --sigma 0.2,0.5 --gamma 1.7",
+		"ggx --sigma 0.5",
+		"beckmann --sigma 0.3,0.6",
+		"gtr --sigma 0.4 --gamma 1.3",
+		"low --sigma 0.4 --gamma 1.5",
+		"t-family --sigma 0.4,0.2 --gamma 3 --params x=0.5",
+		"ellipsoid --params 'alpha_x=0.3;alpha_y=0.5;theta_x=8'",
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		struct csv_table table[2];
+
+		for (int k = 0; k < 2; k++) {
+			char *command;
+
+			assert_true(asprintf(&command, "ndf %s --theta 10:80:10 --phi 20 --phi-i 40 --theta-i %s",
+					     cases[i], k ? "90" : "89.9999999") > 0);
+			stdfit(command);
+			free(command);
+			expect_code(0);
+			table[k] = ndf_output();
+		}
+		for (size_t row = 0; row < 8; row++) {
+			const double near = cell(&table[0], row, IN_VISIBLE);
+
+			assert_true(near > 0);
+			check_rel(cell(&table[1], row, IN_VISIBLE), near, 1e-6, cases[i]);
+			check_rel(cell(&table[1], row, IN_WEIGHT), cell(&table[0], row, IN_WEIGHT), 1e-6, cases[i]);
+		}
+		csv_table_free(&table[0]);
+		csv_table_free(&table[1]);
+	}
+}
+
+/* S1's own evaluation, through its G1 and through G. */
+static void pl_takes_trapezoids(void **state)
+{
+	(void)state;
+	FILE *in = fopen("in.csv", "w");
+	assert_non_null(in);
+	fputs("ndf,theta,lambda,params\n", in);
+	for (int form = 0; form < 2; form++) {
+		fprintf(in, "pl,70,%s,\"", form ? "trapezoid" : "exact");
+		for (int i = 0; i <= 90; i++)
+			fprintf(in, "%sD%d=%.17g", i ? ";" : "", i, exp(-i * i / 900.0));
+		fputs("\"\n", in);
+	}
+	assert_int_equal(fclose(in), 0);
+	shell("exec \"$STDFIT\" ndf - <in.csv");
+	expect_code(0);
+	struct csv_table table = ndf_output();
+	double D[FREE_FORM_VALUES];
+	struct pwl pwl;
+	for (int i = 0; i <= 90; i++)
+		D[i] = exp(-i * i / 900.0);
+	assert_int_equal(free_form_pwl(BINS_NODE, D, &pwl), STATUS_OK);
+	const struct vec3 w = vec3_from_spherical_deg(70, 0);
+	check_rel(cell(&table, 0, IN_G1), pwl_G1(&pwl, w), 1e-14, "exact");
+	check_rel(cell(&table, 1, IN_G1), pwl_G1_trapezoid(&pwl, w), 1e-14, "trapezoid");
+	check_between(fabs(cell(&table, 1, IN_G1) / cell(&table, 0, IN_G1) - 1), 1e-7, 1e-3, "error of the trapezoids");
+	pwl_free(&pwl);
+	csv_table_free(&table);
+}
+
 /* params say what sigma and gamma cannot. */
 static void own_parameters_are_taken(void **state)
 {
@@ -187,6 +353,13 @@ static void own_parameters_are_taken(void **state)
 	table = ndf_output();
 	assert_int_equal(ndf_init_params(&ndf, ndf_find("t-family"), (double[]){0.3, 4, 3}), STATUS_OK);
 	same(&table, 0, IN_G1, ndf_G1(&ndf, vec3_from_spherical_deg(10, 0)));
+	csv_table_free(&table);
+	stdfit("ndf t-family --sigma 0.3,0.7 --gamma 4 --params x=3 --theta 10 --phi 60");
+	expect_code(0);
+	table = ndf_output();
+	assert_int_equal(ndf_init_params_anisotropic(&ndf, ndf_find("t-family"), (double[]){0.3, 4, 3}, 0.7),
+			 STATUS_OK);
+	same(&table, 0, IN_D, ndf_D(&ndf, vec3_from_spherical_deg(10, 60)));
 	csv_table_free(&table);
 	/* Without rotation the ellipsoid is anisotropic GGX. */
 	stdfit("ndf ellipsoid --params 'alpha_x=0.2;alpha_y=0.5' --theta 5:85:5 --phi 20 --theta-i 40");
@@ -312,7 +485,7 @@ enum { TILTS = 10, TURNS = 12, PART = 24, COUNT = 20000 };
 
 /* The normals of the table, in bins of cos(theta) and phi, against the integral of a density over each. */
 static void expect_density(const struct csv_table *table, double (*pdf)(struct vec3 m, const void *context),
-			   const void *context, const char *label)
+			   const void *context, int tests, const char *label)
 {
 	static int count[TILTS * TURNS];
 	static double expected[TILTS * TURNS];
@@ -332,50 +505,63 @@ static void expect_density(const struct csv_table *table, double (*pdf)(struct v
 				(double)table->n_rows / (TILTS * PART) * 2 * M_PI / (TURNS * PART) *
 				pdf((struct vec3){s * cos(phi), s * sin(phi), z}, context);
 		}
-	check_counts(TILTS * TURNS, count, expected, 4, label);
+	check_counts(TILTS * TURNS, count, expected, tests, label);
 }
 
-static double visible(struct vec3 m, const void *context)
-{
-	return vndf_pdf(context, vec3_from_spherical_deg(50, 0), m);
-}
+struct drawn {
+	struct sampler sampler;
+	struct vec3 wi;
+};
 
-static double all(struct vec3 m, const void *context)
+static double density(struct vec3 m, const void *context)
 {
-	return ndf_pdf(context, m);
+	const struct drawn *drawn = context;
+	return sampler_pdf(&drawn->sampler, drawn->wi, m);
 }
 
 static void samples_follow_their_density(void **state)
 {
 	static const struct {
 		const char *arguments, *ndf;
-		double sigma, gamma;
-		bool visible;
+		double sigma_x, sigma_y, gamma, theta_i, phi_i;
+		enum sampling sampling;
 	} cases[] = {
-		{"std --sigma 0.6 --gamma 2.4 --theta-i 50", "std", 0.6, 2.4, true},
-		{"std --sigma 0.6 --gamma 2.4 --theta-i 50 --sampling ndf", "std", 0.6, 2.4, false},
-		{"low --sigma 0.7 --gamma 2 --theta-i 50", "low", 0.7, 2, false},
-		{"gtr --sigma 0.7 --gamma 1.5", "gtr", 0.7, 1.5, false},
+		{"std --sigma 0.6 --gamma 2.4 --theta-i 50", "std", 0.6, 0.6, 2.4, 50, 0, SAMPLING_VISIBLE},
+		{"std --sigma 0.6,0.9 --gamma 2.4 --theta-i 50 --phi-i 70", "std", 0.6, 0.9, 2.4, 50, 70,
+		 SAMPLING_VISIBLE},
+		{"beckmann --sigma 0.6,0.9 --theta-i 90 --phi-i -20", "beckmann", 0.6, 0.9, 0, 90, -20,
+		 SAMPLING_VISIBLE},
+		{"std --sigma 0.6 --gamma 2.4 --theta-i 50 --sampling ndf", "std", 0.6, 0.6, 2.4, 50, 0, SAMPLING_NDF},
+		{"std --sigma 0.6,0.4 --gamma 2.4 --theta-i 50 --phi-i 20 --sampling pseudo", "std", 0.6, 0.4, 2.4, 50,
+		 20, SAMPLING_PSEUDO},
+		{"ggx --sigma 0.7,0.5 --theta-i 50 --phi-i 30 --sampling rational", "ggx", 0.7, 0.5, 2, 50, 30,
+		 SAMPLING_RATIONAL},
+		{"low --sigma 0.7 --gamma 2 --theta-i 50", "low", 0.7, 0.7, 2, 50, 0, SAMPLING_NDF},
+		{"gtr --sigma 0.7 --gamma 1.5", "gtr", 0.7, 0.7, 1.5, 0, 0, SAMPLING_NDF},
 	};
 
 	(void)state;
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		struct drawn drawn = {.wi = vec3_from_spherical_deg(cases[i].theta_i, cases[i].phi_i)};
+		if (cases[i].theta_i == 90)
+			drawn.wi.z = 1e-100;
 		struct ndf ndf;
 		char *command;
 
-		assert_int_equal(ndf_init(&ndf, ndf_find(cases[i].ndf), cases[i].sigma, cases[i].sigma, cases[i].gamma),
-				 0);
+		assert_int_equal(
+			ndf_init(&ndf, ndf_find(cases[i].ndf), cases[i].sigma_x, cases[i].sigma_y, cases[i].gamma), 0);
+		assert_int_equal(sampler_init(&drawn.sampler, &ndf, cases[i].sampling), STATUS_OK);
 		assert_true(asprintf(&command, "sample %s --count %d --seed 3", cases[i].arguments, COUNT) > 0);
 		stdfit(command);
 		free(command);
 		expect_code(0);
 		struct csv_table table = output(sample_columns, SAMPLE_COLUMNS);
 		assert_int_equal(table.n_rows, COUNT);
-		expect_density(&table, cases[i].visible ? visible : all, &ndf, cases[i].arguments);
+		expect_density(&table, density, &drawn, (int)(sizeof cases / sizeof *cases), cases[i].arguments);
 		for (size_t k = 0; k < 50; k++) {
 			const struct vec3 m = {cell(&table, k, MX), cell(&table, k, MY), cell(&table, k, MZ)};
 			check_unit(m.x, m.y, m.z, cases[i].arguments);
-			same(&table, k, PDF, cases[i].visible ? visible(m, &ndf) : all(m, &ndf));
+			same(&table, k, PDF, density(m, &drawn));
 		}
 		csv_table_free(&table);
 	}
@@ -392,6 +578,7 @@ static void weights_add_up_to_the_albedo(void **state)
 		{"beckmann --sigma 0.5 --gaf correlated", "beckmann", INFINITY, GAF_CORRELATED},
 		{"ggx --sigma 0.5 --gaf v-groove --sampling ndf", "ggx", 2, GAF_V_GROOVE},
 		{"gtr --sigma 0.5 --gamma 2.2", "gtr", 2.2, GAF_UNCORRELATED},
+		{"std --sigma 0.5 --gamma 2.4 --sampling pseudo --phi-i 50", "std", 2.4, GAF_UNCORRELATED},
 	};
 
 	(void)state;
@@ -413,7 +600,8 @@ static void weights_add_up_to_the_albedo(void **state)
 			squares += w * w / COUNT;
 			if (*table.row[k][OX]) {
 				const struct vec3 m = {cell(&table, k, MX), cell(&table, k, MY), cell(&table, k, MZ)};
-				const double cos_d = vec3_dot(m, vec3_from_spherical_deg(40, 0));
+				const double cos_d = vec3_dot(
+					m, vec3_from_spherical_deg(40, strstr(cases[i].arguments, "--phi-i") ? 50 : 0));
 				check_rel(cell(&table, k, PDF_O), cell(&table, k, PDF) / (4 * cos_d), 1e-14,
 					  "pdf of wo");
 			}
@@ -436,6 +624,30 @@ static void samples_follow_the_seed(void **state)
 	stdfit("sample ellipsoid --params 'alpha_x=0.2;alpha_y=0.5;theta_x=10' --theta-i 30 --count 5 --json");
 	expect_code(0);
 	assert_int_equal(json_array_length(last.out), 5);
+}
+
+/* Normals are drawn by the exact Lambda, so their density has it, too; the weight has the form that is asked for. */
+static void the_density_is_that_of_what_is_drawn(void **state)
+{
+	const struct vec3 wi = vec3_from_spherical_deg(60, 0);
+	struct ndf ndf;
+
+	(void)state;
+	stdfit("sample std --sigma 0.6 --gamma 2.2 --theta-i 60 --count 50 --lambda rational");
+	expect_code(0);
+	struct csv_table table = output(sample_columns, SAMPLE_COLUMNS);
+	assert_int_equal(ndf_init(&ndf, ndf_find("std"), 0.6, 0.6, 2.2), STATUS_OK);
+	struct ndf rational = ndf;
+	assert_int_equal(ndf_set_lambda_form(&rational, LAMBDA_RATIONAL), STATUS_OK);
+	check_between(fabs(ndf_G1(&rational, wi) / ndf_G1(&ndf, wi) - 1), 1e-3, 1e-2, "error of the form");
+	for (size_t k = 0; k < table.n_rows; k++) {
+		const struct vec3 m = {cell(&table, k, MX), cell(&table, k, MY), cell(&table, k, MZ)};
+		const double pdf = vndf_pdf(&ndf, wi, m);
+
+		same(&table, k, PDF, pdf);
+		same(&table, k, WEIGHT, vndf_weight(&rational, GAF_UNCORRELATED, wi, m, pdf));
+	}
+	csv_table_free(&table);
 }
 
 static void wrong_usage_is_refused(void **state)
@@ -473,6 +685,16 @@ static void wrong_usage_is_refused(void **state)
 		{"ndf --from none.csv --theta 1", 1, "none.csv"},
 		{"sample gtr --sigma 0.2 --gamma 2 --theta-i 3 --sampling visible", 2, "gtr has no --sampling visible"},
 		{"sample std --sigma 0.2 --gamma 2 --sampling visible", 2, "need --theta-i"},
+		{"sample std --sigma 0.2 --gamma 2 --sampling pseudo", 2, "need --theta-i"},
+		{"sample std --sigma 0.2 --gamma 3 --theta-i 3 --sampling rational", 2,
+		 "no --sampling rational: that is for"},
+		{"sample gtr --sigma 0.2 --gamma 3 --theta-i 3 --sampling pseudo", 2, "gtr has no --sampling pseudo"},
+		{"sample std --sigma 0.2 --gamma 2 --phi-i 3", 2, "--phi-i means nothing without --theta-i"},
+		{"ndf std --sigma 0.2 --gamma 2 --theta 3 --phi-i 3", 2, "--phi-i means nothing without --theta-i"},
+		{"ndf std --sigma 0.2 --gamma 2 --theta 3 --theta-i 90.1", 2, "expected a number from 0 to 90"},
+		{"ndf std --sigma 0.2 --gamma 3 --theta 1 --lambda trapezoid", 2, "std has no Lambda trapezoid"},
+		{"ndf low --sigma 0.2,0.3 --params 'B=1;C=2' --theta 1", 2, "low takes one sigma"},
+		{"ndf t-family --sigma 0.2,0 --gamma 3 --params x=1 --theta 1", 2, "bad sigma 0: t-family takes"},
 		{"sample ellipsoid --sigma 0.2 --theta-i 3 --sampling ndf", 2, "ellipsoid has no --sampling ndf"},
 		{"sample std --sigma 0.2 --gamma 2 --count 0", 2, "--count"},
 	};
@@ -502,6 +724,10 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(values_match_golden_rows),
 		cmocka_unit_test(printed_values_are_those_of_the_library),
+		cmocka_unit_test(cumulative_values_are_those_of_the_library),
+		cmocka_unit_test(moments_match_golden_rows),
+		cmocka_unit_test(grazing_incidence_is_a_limit),
+		cmocka_unit_test(pl_takes_trapezoids),
 		cmocka_unit_test(own_parameters_are_taken),
 		cmocka_unit_test(nodes_of_pl_are_normalised),
 		cmocka_unit_test(rows_are_chosen_and_bad_rows_refused),
@@ -509,6 +735,7 @@ int main(void)
 		cmocka_unit_test(samples_follow_their_density),
 		cmocka_unit_test(weights_add_up_to_the_albedo),
 		cmocka_unit_test(samples_follow_the_seed),
+		cmocka_unit_test(the_density_is_that_of_what_is_drawn),
 		cmocka_unit_test(wrong_usage_is_refused),
 	};
 

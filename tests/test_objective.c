@@ -215,6 +215,18 @@ static void entries_above_the_horizon(void **state)
 	}
 }
 
+/* A table with fewer samples than are asked for stays itself. */
+static void check_kept(const struct sample_set *table)
+{
+	struct sample_set same;
+
+	assert_int_equal(sample_set_thin(&same, table, 12 * table->n_samples), STATUS_OK);
+	assert_int_equal(same.n_samples, table->n_samples);
+	for (int n = 0; n < table->n_blocks * KERNEL_BLOCK; n++)
+		assert_true(same.w[n] == table->w[n]);
+	sample_set_free(&same);
+}
+
 /* A sample of a table tells the error of the whole. */
 static void thinned_tables_estimate_the_error(void **state)
 {
@@ -234,6 +246,7 @@ static void thinned_tables_estimate_the_error(void **state)
 	assert_int_equal(sample_set_init(&full, &geometry, &measurement, 2), STATUS_OK);
 	assert_int_equal(sample_set_thin(&thin, &full, 5000), STATUS_OK);
 	check_between(thin.n_samples, 4900, 5100, "slots");
+	check_kept(&thin);
 	assert_int_equal(objective_init(&on_full, &full, &o, ndf_find("ggx"), 1, MASKING_COARSE), STATUS_OK);
 	assert_int_equal(objective_init(&on_thin, &thin, &o, ndf_find("ggx"), 1, MASKING_COARSE), STATUS_OK);
 	for (size_t n = 0; n < 3; n++) {

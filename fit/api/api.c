@@ -56,7 +56,10 @@ enum stdfit_status api_gaf(const char *name, enum gaf *gaf, struct stdfit_error 
 enum stdfit_status api_fresnel(const char *name, enum fresnel *fresnel, struct stdfit_error *error)
 {
 	*fresnel = FRESNEL_DIELECTRIC;
-	return name && fresnel_find(name, fresnel) != STATUS_OK ? api_unknown(error, "fresnel", name) : STDFIT_OK;
+	/* The three reflectances of f82 have no place in the structs. */
+	const bool known = !name || (fresnel_find(name, fresnel) == STATUS_OK && *fresnel != FRESNEL_F82);
+
+	return known ? STDFIT_OK : api_unknown(error, "fresnel", name);
 }
 
 enum stdfit_status api_bins(const char *name, enum bins *bins, struct stdfit_error *error)

@@ -6,6 +6,7 @@
 #include "fit/results/result.h"
 #include "fit/search/free_form.h"
 #include "src/names.h"
+#include "src/ndf_cdf.h"
 #include "src/ndf_slopes.h"
 #include "src/vndf.h"
 
@@ -136,9 +137,9 @@ static bool is_of_class(const char *name, const void *context)
 	return false;
 }
 
-/* All its own parameters, from the words sigma and gamma and from params. Isotropic. */
+/* All its own parameters, from the words sigma and gamma and from params. */
 static enum status from_params(const struct distribution_words *words, const struct ndf_class *class, double sigma,
-			       double gamma, struct ndf *ndf, struct error *error)
+			       double sigma_y, double gamma, struct ndf *ndf, struct error *error)
 {
 	double value[NDF_PARAMS_MAX] = {NAN, NAN, NAN};
 	for (int i = 0; ndf_param_at(class, i); i++) {
@@ -148,7 +149,14 @@ static enum status from_params(const struct distribution_words *words, const str
 		if (isnan(value[i]))
 			return error_set(error, STATUS_DOMAIN, "%s needs %s", ndf_name(class), param->name);
 	}
-	return ndf_init_params(ndf, class, value) != STATUS_OK ? refuse_params(class, value, error) : STATUS_OK;
+	const enum status status = sigma_y == sigma || isnan(sigma)
+					   ? ndf_init_params(ndf, class, value)
+					   : ndf_init_params_anisotropic(ndf, class, value, sigma_y);
+	if (status == STATUS_OK)
+		return STATUS_OK;
+	if (!isnan(sigma_y) && !(sigma_y >= NDF_SIGMA_MIN && sigma_y <= NDF_SIGMA_MAX))
+		value[0] = sigma_y;
+	return refuse_params(class, value, error);
 }
 
 /* The same for the words sigma, sigma_y and gamma, which is C of low. */
@@ -169,19 +177,17 @@ static enum status make_class(const struct distribution_words *words, const stru
 	enum status status = check_params(words->params, is_of_class, class, error);
 	if (status != STATUS_OK)
 		return status;
-	if (given(words->params) && sigma_x != sigma_y && !isnan(sigma_x))
-		return error_set(error, STATUS_DOMAIN, "params and two values of sigma do not go together");
+	if (sigma_x != sigma_y && !isnan(sigma_x) && !ndf_has_anisotropy(class))
+		return error_set(error, STATUS_DOMAIN, "%s takes one sigma, the same in all directions",
+				 ndf_name(class));
 	if (given(words->params))
-		return from_params(words, class, sigma_x, gamma, ndf, error);
+		return from_params(words, class, sigma_x, sigma_y, gamma, ndf, error);
 	if (isnan(sigma_x))
 		return error_set(error, STATUS_DOMAIN, "%s needs sigma", ndf_name(class));
 	if (ndf_has_gamma(class) && isnan(gamma))
 		return error_set(error, STATUS_DOMAIN, "%s needs gamma", ndf_name(class));
 	if (!ndf_has_gamma(class) && !isnan(gamma))
 		return error_set(error, STATUS_DOMAIN, "%s has no gamma", ndf_name(class));
-	if (sigma_x != sigma_y && !ndf_has_anisotropy(class))
-		return error_set(error, STATUS_DOMAIN, "%s takes one sigma, the same in all directions",
-				 ndf_name(class));
 	return ndf_init(ndf, class, sigma_x, sigma_y, gamma) != STATUS_OK
 		       ? refuse_words(class, sigma_x, sigma_y, gamma, error)
 		       : STATUS_OK;
@@ -298,27 +304,66 @@ double distribution_weight(const struct distribution *distribution, enum gaf gaf
 	       ellipsoid_D(&distribution->ellipsoid, m) / pdf * cos_d / wi.z;
 }
 
+struct distribution_cdf distribution_cdf(const struct distribution *distribution, struct vec3 wi, double theta,
+					 double phi)
+{
+	const double radians = M_PI / 180;
+	struct distribution_cdf cdf = {NAN, NAN, NAN, NAN, NAN};
+	if (distribution->is_ellipsoid)
+		return cdf;
+	const struct ndf *ndf = &distribution->ndf;
+	cdf.phi = ndf_cdf_phi(ndf, phi * radians);
+	cdf.theta = ndf_cdf_theta(ndf, theta * radians, phi * radians);
+	cdf.joint = ndf_cdf(ndf, theta * radians, phi * radians);
+	vndf_cdf(ndf, wi, vec3_from_spherical_deg(theta, phi), &cdf.along, &cdf.across);
+	return cdf;
+}
+
+double distribution_moment(const struct distribution *distribution, double phi, int order)
+{
+	double moment = NAN;
+	if (distribution->is_ellipsoid || ndf_moment(&distribution->ndf, phi, order, &moment) != STATUS_OK)
+		return NAN;
+	return moment;
+}
+
+double distribution_kurtosis(const struct distribution *distribution)
+{
+	double kurtosis = NAN;
+	if (distribution->is_ellipsoid || ndf_excess_kurtosis(&distribution->ndf, &kurtosis) != STATUS_OK)
+		return NAN;
+	return kurtosis;
+}
+
 /* Samples */
 
-bool distribution_samples(const struct distribution *distribution, enum sampling sampling)
+struct vec3 distribution_direction(double theta_i, double phi_i)
 {
-	if (distribution->is_ellipsoid)
-		return sampling == SAMPLING_VISIBLE;
-	return sampling == SAMPLING_NDF || vndf_supports(&distribution->ndf);
+	struct vec3 wi = vec3_from_spherical_deg(theta_i, phi_i);
+	if (wi.z < 1e-100)
+		wi.z = 1e-100;
+	return wi;
 }
 
-struct vec3 distribution_sample(const struct distribution *distribution, enum sampling sampling, struct vec3 wi,
-				double u1, double u2)
+enum status distribution_sampler_init(struct distribution_sampler *sampler, const struct distribution *distribution,
+				      enum sampling sampling)
 {
+	sampler->distribution = distribution;
 	if (distribution->is_ellipsoid)
-		return ellipsoid_sample(&distribution->ellipsoid, wi, u1, u2);
-	return sampling == SAMPLING_VISIBLE ? vndf_sample(&distribution->ndf, wi, u1, u2)
-					    : ndf_sample(&distribution->ndf, u1, u2);
+		return sampling == SAMPLING_VISIBLE ? STATUS_OK : STATUS_UNSUPPORTED;
+	return sampler_init(&sampler->sampler, &distribution->ndf, sampling);
 }
 
-double distribution_pdf(const struct distribution *distribution, enum sampling sampling, struct vec3 wi, struct vec3 m)
+struct vec3 distribution_sample(const struct distribution_sampler *sampler, struct vec3 wi, double u1, double u2)
 {
-	if (sampling == SAMPLING_VISIBLE)
-		return distribution_visible_pdf(distribution, wi, m);
-	return distribution_D(distribution, m) * m.z;
+	if (sampler->distribution->is_ellipsoid)
+		return ellipsoid_sample(&sampler->distribution->ellipsoid, wi, u1, u2);
+	return sampler_sample(&sampler->sampler, wi, u1, u2);
+}
+
+double distribution_pdf(const struct distribution_sampler *sampler, struct vec3 wi, struct vec3 m)
+{
+	if (sampler->distribution->is_ellipsoid)
+		return ellipsoid_pdf(&sampler->distribution->ellipsoid, wi, m);
+	return sampler_pdf(&sampler->sampler, wi, m);
 }

@@ -3,6 +3,7 @@
 #include "data_readers/text_quote.h"
 #include "fit/cli/nearest.h"
 #include "fit/results/csv.h"
+#include "src/names.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -70,8 +71,11 @@ const struct option_spec option_specs[] = {
 	{"ndf", 0, KIND_NDFS, MODEL | BENCH | EXPORT, NOT_RECORDED, "NAME", "NDF of the model", AT(fit.ndf), 0, 0},
 	{"gaf", 0, KIND_GAF, SEARCHES | MODEL | SOURCES | NDF | SAMPLE, RECORDED, "NAME", "masking and shadowing G",
 	 AT(fit.criterion.gaf), 0, 0},
-	{"lambda", 0, KIND_LAMBDA, SEARCHES | MODEL | SOURCES | NDF | SAMPLE, RECORDED, "FORM",
+	{"lambda", 0, KIND_LAMBDA, SEARCHES | MODEL | SOURCES, RECORDED, "FORM",
 	 "form of Lambda of STD and its family; other NDFs have the exact one only", AT(fit.lambda), 0, 0},
+	{"lambda", 0, KIND_LAMBDA_OF_ANY, NDF | SAMPLE, NOT_RECORDED, "FORM",
+	 "form of Lambda of STD and its family; trapezoid is for pl, other NDFs have the exact one only",
+	 AT(fit.lambda), 0, 0},
 	{"fresnel", 0, KIND_FRESNEL, SEARCHES | MODEL | SOURCES, RECORDED, "NAME", "Fresnel term F", AT(fit.fresnel), 0,
 	 0},
 	{"weight", 0, KIND_WEIGHTS, FIT, RECORDED, "LIST",
@@ -100,6 +104,15 @@ const struct option_spec option_specs[] = {
 	 AT(fit.criterion.zero_is_missing), 0, 0},
 	{"unbounded", 0, KIND_ON, SEARCHES | SOURCES, RECORDED, NULL, "kd and ks may exceed 1", AT(fit.unbounded), 0,
 	 0},
+	{"diffuse", 0, KIND_DIFFUSE, SEARCHES | SOURCES, RECORDED_GIVEN, "NAME",
+	 "the diffuse term: Lambert's alone, or with one of grazing directions beside it, as Burley's has",
+	 AT(fit.grazing), 0, 0},
+	{"exponent", 0, KIND_NUMBER, SEARCHES, RECORDED_GIVEN, "P",
+	 "with --diffuse burley: fix its exponent (Burley: 5)", AT(fit.grazing_exponent), FIT_GRAZING_MIN,
+	 FIT_GRAZING_MAX},
+	{"lobes", 0, KIND_INT, SEARCHES | SOURCES, RECORDED_GIVEN, "1|2",
+	 "specular lobes: 2 has a second one of the same NDF and index, with ks, sigma and gamma of its own",
+	 AT(fit.lobes), 1, 2},
 	{"no-diffuse", 0, KIND_OFF, SEARCHES | SOURCES, RECORDED, NULL, "kd = 0", AT(fit.diffuse), 0, 0},
 	{"no-specular", 0, KIND_OFF, SEARCHES | SOURCES, RECORDED, NULL, "ks = 0", AT(fit.specular), 0, 0},
 	{"gray", 0, KIND_ON, SEARCHES | SOURCES, RECORDED, NULL, "one kd and one ks for the three channels",
@@ -159,6 +172,22 @@ const struct option_spec option_specs[] = {
 	 FIT_K_MAX},
 	{"kd", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "diffuse factors", AT(kd), 0, FIT_FACTOR_MAX},
 	{"ks", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "specular factors", AT(ks), 0, FIT_FACTOR_MAX},
+	{"f0", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "with --fresnel f82: F along the normal",
+	 AT(f82[0]), 0, 1},
+	{"f82", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "F where cos theta_d is 1/7, at about 82 degrees",
+	 AT(f82[1]), 0, 1},
+	{"f90", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "F at grazing incidence; 1 if not given",
+	 AT(f82[2]), 0, 1},
+	{"kg", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B",
+	 "factors of a diffuse term of grazing directions, as Burley's has", AT(kg), 0, FIT_FACTOR_MAX},
+	{"exponent", 0, KIND_NUMBER, MODEL | SOURCES, NOT_RECORDED, "P",
+	 "its exponent: given with --kg, 5 if not given, or fixed in a fit with --diffuse burley",
+	 AT(fit.grazing_exponent), FIT_GRAZING_MIN, FIT_GRAZING_MAX},
+	{"ks2", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "factors of a second lobe of the same NDF and F",
+	 AT(ks2), 0, FIT_FACTOR_MAX},
+	{"sigma2", 0, KIND_NUMBER, MODEL | SOURCES, NOT_RECORDED, "S", "its roughness", AT(sigma2), FIT_SIGMA_MIN,
+	 FIT_SIGMA_MAX},
+	{"gamma2", 0, KIND_GAMMA, MODEL | SOURCES, NOT_RECORDED, "G", "its gamma", AT(gamma2), 1e-3, FIT_GAMMA_MAX},
 	{"from", 0, KIND_TEXT, EVAL | SOURCES | NDF | SAMPLE, NOT_RECORDED, "FILE.csv",
 	 "take the model from the row of this material (and --ndf, if given); FILE.json: from a model's JSON", AT(from),
 	 0, 0},
@@ -180,9 +209,12 @@ const struct option_spec option_specs[] = {
 	 AT(theta), 0, 0},
 	{"phi", 0, KIND_WORD, NDF, NOT_RECORDED, "LIST", "azimuths, degrees, likewise; 0 if not given", AT(phi), 0, 0},
 	{"theta-i", 0, KIND_NUMBER, NDF | SAMPLE, NOT_RECORDED, "DEG",
-	 "direction from which normals are seen, at azimuth 0", AT(theta_i), 0, 89.999999},
+	 "direction from which normals are seen; 90 is the limit of grazing incidence", AT(theta_i), 0, 90},
+	{"phi-i", 0, KIND_NUMBER, NDF | SAMPLE, NOT_RECORDED, "DEG", "azimuth of that direction", AT(phi_i), -360, 360},
 	{"sampling", 0, KIND_SAMPLING, SAMPLE, NOT_RECORDED, "NAME",
-	 "which normals; with --theta-i the visible ones where the NDF can, else all", AT(sampling), 0, 0},
+	 "which normals; with --theta-i the visible ones where the NDF can, else all. pseudo: those of GGX or Beckmann "
+	 "where gamma is near enough; rational: visible ones of GGX by a rational fit",
+	 AT(sampling), 0, 0},
 	{"count", 0, KIND_INT, SAMPLE, NOT_RECORDED, "N", "how many", AT(count), 1, 1000000},
 	{"seed", 0, KIND_SEED, SAMPLE, NOT_RECORDED, "N", "seed of the random numbers", AT(fit.seed), 0, 0},
 	{"pictures", 0, KIND_ON, COMPARE, NOT_RECORDED, NULL,
@@ -204,8 +236,9 @@ const struct option_spec option_specs[] = {
 	 AT(size), 8, 4096},
 	{"samples", 0, KIND_INT, RENDER | REPORT, NOT_RECORDED, "N", "samples per pixel, best a power of two",
 	 AT(pixel_samples), 1, 65536},
-	{"sampling", 0, KIND_SAMPLING, RENDER, NOT_RECORDED, "NAME", "normals by which directions are sampled",
-	 AT(sampling), 0, 0},
+	{"sampling", 0, KIND_SAMPLING, RENDER, NOT_RECORDED, "NAME",
+	 "normals by which directions are sampled; visible ones, or all, where the NDF has none such", AT(sampling), 0,
+	 0},
 	{"seed", 0, KIND_SEED, RENDER, NOT_RECORDED, "N", "seed of the samples", AT(fit.seed), 0, 0},
 	{"difference", 0, KIND_ON, RENDER, NOT_RECORDED, NULL,
 	 "show differences in false colours for several materials, too", AT(difference), 0, 0},
@@ -220,6 +253,8 @@ const struct option_spec option_specs[] = {
 _Static_assert(sizeof option_specs / sizeof *option_specs <= OPTIONS_MAX,
 	       "struct options.given has an entry per option");
 
+static const char *const diffuse_name[] = {"lambert", "burley"};
+
 const char *option_choice(enum option_kind kind, int i)
 {
 	switch (kind) {
@@ -229,8 +264,14 @@ const char *option_choice(enum option_kind kind, int i)
 		return i < GAF_COUNT ? gaf_name((enum gaf)i) : NULL;
 	case KIND_LAMBDA:
 		return i < LAMBDA_FORM_COUNT ? lambda_form_name((enum lambda_form)i) : NULL;
+	case KIND_LAMBDA_OF_ANY:
+		return i <= LAMBDA_FORM_COUNT
+			       ? lambda_form_name(i < LAMBDA_FORM_COUNT ? (enum lambda_form)i : LAMBDA_TRAPEZOID)
+			       : NULL;
 	case KIND_FRESNEL:
 		return i < FRESNEL_COUNT ? fresnel_name((enum fresnel)i) : NULL;
+	case KIND_DIFFUSE:
+		return i < 2 ? diffuse_name[i] : NULL;
 	case KIND_WEIGHT:
 	case KIND_WEIGHTS:
 		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
@@ -254,15 +295,37 @@ const char *option_choice(enum option_kind kind, int i)
 	}
 }
 
+static enum status diffuse_find(const char *text, bool *burley)
+{
+	const int i = names_find(diffuse_name, 2, text);
+	if (i < 0)
+		return STATUS_DOMAIN;
+	*burley = i == 1;
+	return STATUS_OK;
+}
+
+static enum status lambda_form_of_student_t(const char *text, enum lambda_form *form)
+{
+	enum lambda_form found;
+	if (lambda_form_find(text, &found) != STATUS_OK || found >= LAMBDA_FORM_COUNT)
+		return STATUS_DOMAIN;
+	*form = found;
+	return STATUS_OK;
+}
+
 static enum status choice_find(enum option_kind kind, const char *text, void *value)
 {
 	switch (kind) {
 	case KIND_GAF:
 		return gaf_find(text, value);
 	case KIND_LAMBDA:
+		return lambda_form_of_student_t(text, value);
+	case KIND_LAMBDA_OF_ANY:
 		return lambda_form_find(text, value);
 	case KIND_FRESNEL:
 		return fresnel_find(text, value);
+	case KIND_DIFFUSE:
+		return diffuse_find(text, value);
 	case KIND_WEIGHT:
 		return weight_find(text, value);
 	case KIND_QUANTITY:
@@ -588,10 +651,14 @@ void option_write(FILE *file, const struct options *options, const struct option
 		fputs(gaf_name(*(const enum gaf *)value), file);
 		break;
 	case KIND_LAMBDA:
+	case KIND_LAMBDA_OF_ANY:
 		fputs(lambda_form_name(*(const enum lambda_form *)value), file);
 		break;
 	case KIND_FRESNEL:
 		fputs(fresnel_name(*(const enum fresnel *)value), file);
+		break;
+	case KIND_DIFFUSE:
+		fputs(diffuse_name[*(const bool *)value], file);
 		break;
 	case KIND_WEIGHT:
 		fputs(weight_name(*(const enum weight *)value), file);

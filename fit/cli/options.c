@@ -70,10 +70,12 @@ static const struct command_text commands[COMMAND_COUNT] = {
 	[COMMAND_NDF] =
 		{"ndf", "[NAME]", "D, P22, P2, Lambda, G1 and pdf of a distribution as a table",
 		 "Tabulates a normal distribution function: D and pdf of the normal at theta and phi, P22 of its\n"
-		 "slope, P2 of the slope tan(theta) along phi, Lambda and G1 of the direction there; with --theta-i\n"
-		 "the density of the normal among those visible, and the weight of such a sample. NAME is an NDF,\n"
-		 "ellipsoid, or - for rows of standard input: a CSV with the columns ndf, sigma, sigma_y, gamma,\n"
-		 "params, lambda, theta, phi, theta_i, as far as needed. With --from, the NDFs of a result table.\n"},
+		 "slope, P2 of the slope tan(theta) along phi and its moments, Lambda and G1 of the direction there,\n"
+		 "the shares of normals below theta and in (0, phi); with --theta-i the density of the normal among\n"
+		 "those visible, the weight of such a sample, and the CDFs of its slopes along and across that\n"
+		 "direction. NAME is an NDF, ellipsoid, or - for rows of standard input: a CSV with the columns ndf,\n"
+		 "sigma, sigma_y, gamma, params, lambda, theta, phi, theta_i, phi_i, as far as needed. With --from,\n"
+		 "the NDFs of a result table.\n"},
 	[COMMAND_SAMPLE] =
 		{"sample", "[NAME]", "random normals of a distribution, and where they reflect to",
 		 "Draws normals m, visible or all, with their density. With --theta-i also the direction wo into\n"
@@ -92,12 +94,13 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "gets samples instead, wi on a grid and wo by half vectors around the mirror direction: anisotropic\n"
 		 "models (--sigma SX,SY) need these.\n"},
 	[COMMAND_RENDER] =
-		{"render", "PATH...", "spheres of measured materials beside those of their models, as PNG",
+		{"render", "[PATH...]", "spheres of measured materials beside those of their models, as PNG",
 		 "Renders a sphere of each measured table and of each model of it in the same light, one row a\n"
 		 "material, with their differences in false colours if there is one material only. The models\n"
 		 "are fitted, taken from a result table (--from, or FILE.csv as the only path: the files it\n"
-		 "names), or given (--kd, --ks, ...). Reports how different model and table look: rmse of linear\n"
-		 "values, delta_e the mean CIEDE2000, ssim the structural similarity; these numbers are all that is\n"
+		 "names), or given (--kd, --ks, ...). A model given so, or by --from FILE.json, may do without\n"
+		 "PATH: its sphere stands alone. Reports how different model and table look: rmse of linear values,\n"
+		 "delta_e the mean CIEDE2000, ssim the structural similarity; these numbers are all that is\n"
 		 "made without -o. With --transmission it takes no PATH, and shows spheres of rough glass.\n"},
 	[COMMAND_PLOT] =
 		{"plot", "PATH...", "fits, or the course of searches, as plots by gnuplot",
@@ -296,6 +299,9 @@ struct options options_default(enum command command)
 		.count = 1000,
 		.ks = {0, 0, 0},
 		.kd = {0, 0, 0},
+		.f82 = {{0, 0, 0}, {0, 0, 0}, {1, 1, 1}},
+		.sigma2 = NAN,
+		.gamma2 = NAN,
 		.environment = "studio",
 		.size = 256,
 		.accuracy = 0.2,
@@ -507,8 +513,11 @@ int options_check_fit(const struct options *options)
 				     isnan(fit->angle) ? "sigma SX,SY" : "angle");
 	if (fit->anisotropic && !isnan(fit->sigma) && isnan(fit->sigma_y))
 		return options_usage(options->command, "--sigma with --anisotropic takes SX,SY");
-	if (fit->fresnel == FRESNEL_NONE && options_given(options, "ior"))
-		return options_usage(options->command, "--ior means nothing with --fresnel none");
+	if (!fresnel_has_ior(fit->fresnel) && options_given(options, "ior"))
+		return options_usage(options->command, "--ior means nothing with --fresnel %s",
+				     fresnel_name(fit->fresnel));
+	if (!fit->grazing && options_given(options, "exponent"))
+		return options_usage(options->command, "--exponent means nothing without --diffuse burley");
 	if (options_given(options, "gamma") && !any_has_gamma(fit))
 		return options_usage(options->command, "--gamma means nothing for these NDFs");
 	if (broken == FIT_RULE_TABULATED ||
@@ -618,10 +627,34 @@ const char *options_given_beside(const struct options *options, const char *cons
 	return NULL;
 }
 
+/* The options of richer models: which of them need which others. */
+static int check_terms(const struct options *options)
+{
+	static const struct {
+		const char *name, *needs;
+	} pair[] = {{"exponent", "kg"}, {"sigma2", "ks2"}, {"gamma2", "ks2"}, {"ks2", "sigma2"}};
+	static const char *const reflectance[F82_PARTS] = {"f0", "f82", "f90"};
+	const enum command command = options->command;
+	const bool f82 = options->fit.fresnel == FRESNEL_F82;
+	for (size_t i = 0; i < sizeof pair / sizeof *pair; i++)
+		if (options_given(options, pair[i].name) && !options_given(options, pair[i].needs))
+			return options_usage(command, "--%s needs --%s", pair[i].name, pair[i].needs);
+	for (int i = 0; i < F82_PARTS; i++)
+		if (!f82 && options_given(options, reflectance[i]))
+			return options_usage(command, "--%s means nothing without --fresnel f82", reflectance[i]);
+	if (f82 && !(options_given(options, "f0") && options_given(options, "f82")))
+		return options_usage(command, "--fresnel f82 needs --f0 and --f82");
+	if (options_given(options, "ks2") && ndf_has_gamma(options->fit.ndf[0]) != options_given(options, "gamma2"))
+		return options_usage(command, "--ndf %s %s", ndf_name(options->fit.ndf[0]),
+				     ndf_has_gamma(options->fit.ndf[0]) ? "needs --gamma2" : "has no --gamma2");
+	return -1;
+}
+
 /* An option for a term that the model does not have. */
 static int check_model(const struct options *options)
 {
-	static const char *const specular[] = {"sigma", "angle", "gamma", "ior", "k", "ndf", "gaf", "fresnel"};
+	static const char *const specular[] = {"sigma",   "angle", "gamma", "ior", "k",   "ndf",    "gaf",
+					       "fresnel", "f0",    "f82",   "f90", "ks2", "sigma2", "gamma2"};
 	const enum command command = options->command;
 	const struct ndf_class *ndf = options->fit.ndf[0];
 	if (options->fit.n_ndf != 1)
@@ -636,13 +669,14 @@ static int check_model(const struct options *options)
 	if (options_given(options, "ks") && ndf_has_gamma(ndf) != options_given(options, "gamma"))
 		return options_usage(command, "--ndf %s %s", ndf_name(ndf),
 				     ndf_has_gamma(ndf) ? "needs --gamma" : "has no --gamma");
-	if (options->fit.fresnel == FRESNEL_NONE && options_given(options, "ior"))
-		return options_usage(command, "--ior means nothing with --fresnel none");
+	if (!fresnel_has_ior(options->fit.fresnel) && options_given(options, "ior"))
+		return options_usage(command, "--ior means nothing with --fresnel %s",
+				     fresnel_name(options->fit.fresnel));
 	if (isnan(options->fit.sigma_y) && options_given(options, "angle"))
 		return options_usage(command, "--angle needs --sigma SX,SY");
 	if (options->fit.fresnel != FRESNEL_CONDUCTOR && options_given(options, "k"))
 		return options_usage(command, "--k means nothing without --fresnel conductor");
-	return -1;
+	return check_terms(options);
 }
 
 int options_model(const struct options *options, struct cook_torrance *model)
@@ -664,7 +698,16 @@ int options_model(const struct options *options, struct cook_torrance *model)
 		shape.stretch = log(sigma / fit->sigma_y);
 		shape.angle = isnan(fit->angle) ? 0 : fit->angle;
 	}
-	if (shape_ndf(&shape, fit->ndf[0], fit->lambda, &model->ndf) != STATUS_OK)
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		for (int i = 0; i < F82_PARTS; i++)
+			model->reflectance[c][i] = options->f82[i][c];
+	memcpy(model->kg, options->kg, sizeof model->kg);
+	model->grazing = isnan(fit->grazing_exponent) ? 5 : fit->grazing_exponent;
+	memcpy(model->ks_second, options->ks2, sizeof model->ks_second);
+	const struct shape second = {.sigma = options->sigma2, .gamma = isnan(options->gamma2) ? 2 : options->gamma2};
+	if (shape_ndf(&shape, fit->ndf[0], fit->lambda, &model->ndf) != STATUS_OK ||
+	    (options_given(options, "ks2") &&
+	     shape_ndf(&second, fit->ndf[0], fit->lambda, &model->second) != STATUS_OK))
 		return options_usage(options->command, "--ndf %s does not allow these parameters",
 				     ndf_name(fit->ndf[0]));
 	return -1;

@@ -31,6 +31,7 @@ struct options {
 	double within; /* percent; NaN: every NDF as it is */
 	/* A model, for eval and synth; its sigma, gamma and ior are those of `fit`. */
 	double kd[3], ks[3], k;
+	double f82[F82_PARTS][3], kg[3], ks2[3], sigma2, gamma2;
 	const char *from; /* the result table that has the model */
 	int row;          /* its row, from 1; 0: the one of this material and NDF */
 	enum export_format format;
@@ -38,7 +39,7 @@ struct options {
 	/* A distribution, for ndf and sample, in words: distribution.h. */
 	const char *sigma_words, *gamma_words, *params;
 	const char *theta, *phi; /* lists of angles: angles.h */
-	double theta_i;          /* degrees; NaN: not given */
+	double theta_i, phi_i;   /* degrees; theta_i NaN: not given */
 	enum sampling sampling;  /* and for render */
 	int count;
 	int n_phi_d;
@@ -55,7 +56,7 @@ struct options {
 	int size, pixel_samples;
 	bool difference;
 	bool transmission, multiple; /* render: a sphere of glass, with all orders of scattering */
-	bool pictures; /* compare: columns of pictures */
+	bool pictures;               /* compare: columns of pictures */
 	atomic_bool *cancel;
 	char **path; /* what is no option, in the order given */
 	int n_paths;

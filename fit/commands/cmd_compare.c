@@ -92,13 +92,22 @@ static int compare(const struct options *options, struct csv_table *rows)
 	return status != STATUS_OK || light.n_failed ? EXIT_FAILED : EXIT_DONE;
 }
 
+/* Whether anything was fitted: rows of failures alone have nothing to compare. */
+static bool has_fits(const struct csv_table *rows)
+{
+	for (size_t i = 0; i < rows->n_rows; i++)
+		if (*rows->row[i][RESULT_ERROR])
+			return true;
+	return false;
+}
+
 /* Rows that can be compared were made with the same options, but for the weight, and one fit has one result. */
 static enum status check_rows(const struct csv_table *rows, const char *path, struct error *error)
 {
 	char name[TEXT_QUOTE_SIZE];
 	text_quote(path, name, sizeof name);
-	if (!rows->n_rows)
-		return error_set(error, STATUS_NO_DATA, "'%s' has no rows to compare", name);
+	if (!has_fits(rows))
+		return error_set(error, STATUS_NO_DATA, "'%s' has no fits to compare", name);
 	for (size_t i = 1; i < rows->n_rows; i++)
 		if (!result_same_but_weight(rows->row[0], rows->row[i]))
 			return error_set(error, STATUS_FORMAT, "'%s' row %zu: made with other options than row 1", name,
@@ -155,8 +164,9 @@ static int compare_fits(const struct options *options)
 			status = error_set(&error, STATUS_NO_MEMORY, "out of memory");
 	if (status != STATUS_OK)
 		report_error("%s", error.text);
-	const int compared =
-		status == STATUS_OK && rows.n_rows && code != EXIT_INTERRUPTED ? compare(options, &rows) : EXIT_DONE;
+	const int compared = status == STATUS_OK && has_fits(&rows) && code != EXIT_INTERRUPTED
+				     ? compare(options, &rows)
+				     : EXIT_DONE;
 	csv_table_free(&rows);
 	batch_free(&batch);
 	files_free(&files);

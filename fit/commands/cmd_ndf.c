@@ -43,10 +43,10 @@ static enum status run_input(const struct options *options, struct csv_table *ou
 	return status;
 }
 
-/* With rows from standard input only --theta-i and --gaf say something. */
+/* With rows from standard input only --theta-i, --phi-i and --gaf say something. */
 static int check_input(const struct options *options)
 {
-	static const char *const useful[] = {"theta-i", "gaf", "json", "table", NULL};
+	static const char *const useful[] = {"theta-i", "phi-i", "gaf", "json", "table", NULL};
 	const char *ignored = options_given_beside(options, useful);
 	return ignored ? options_usage(COMMAND_NDF, "--%s means nothing with -: rows have their own", ignored) : -1;
 }

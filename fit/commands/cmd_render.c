@@ -158,6 +158,56 @@ static enum status show_file(struct render *render, const char *path)
 	return status;
 }
 
+static enum status write_picture(const struct render *render, struct error *error)
+{
+	const bool png =
+		outputs_end_with(render->picture, ".png") || (render->options->to_standard_output && image_has_png());
+	return png ? image_write_png(render->picture, &render->sheet.image, error)
+		   : image_write_pfm(render->picture, &render->sheet.image, error);
+}
+
+/* A model alone: the picture is all there is to show. */
+static enum status draw_model(struct render *render, const struct source_model *model, const struct sphere *sphere,
+			      struct error *error)
+{
+	enum status status = store_probe(render->picture, error);
+	if (status == STATUS_OK && sheet_init(&render->sheet, render->options->size, 1, 1, false) != STATUS_OK)
+		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
+	if (status != STATUS_OK)
+		return status;
+	sheet_title(&render->sheet, 0, ndf_name(model->model.ndf.class));
+	sheet_sphere(&render->sheet, 0, 0, sphere, model->material ? model->material : "");
+	return write_picture(render, error);
+}
+
+static int show_model(struct render *render)
+{
+	const struct options *options = render->options;
+	struct model_source source;
+	struct sphere sphere = {.coverage = NULL};
+	struct error error;
+	enum status status = lighting_make(options, &render->environment, &error);
+	if (status == STATUS_DOMAIN)
+		return options_usage(COMMAND_RENDER, "%s", error.text);
+	if (status == STATUS_OK)
+		status = model_source_read(options, NULL, &source, &error);
+	if (status == STATUS_OK) {
+		render->progress = progress_start((size_t)options->size, "rows", options->quiet);
+		status = pictures_render_model(&source.model[0].model, options->sampling, &render->environment,
+					       &render->sphere, &sphere);
+		progress_erase(&render->progress);
+		status = status != STATUS_OK ? error_set(&error, status, "%s", status_str(status))
+					     : draw_model(render, &source.model[0], &sphere, &error);
+		sphere_free(&sphere);
+		model_source_free(&source);
+	}
+	if (*options->cancel)
+		return EXIT_INTERRUPTED;
+	if (status != STATUS_OK)
+		report_error("%s", error.text);
+	return status != STATUS_OK ? EXIT_FAILED : EXIT_DONE;
+}
+
 /* All */
 
 static enum status prepare_sheet(struct render *render, size_t n, struct error *error)
@@ -184,14 +234,6 @@ static enum status prepare_sheet(struct render *render, size_t n, struct error *
 		sheet_title(&render->sheet, 1 + c, title);
 	}
 	return STATUS_OK;
-}
-
-static enum status write_picture(const struct render *render, struct error *error)
-{
-	const bool png =
-		outputs_end_with(render->picture, ".png") || (render->options->to_standard_output && image_has_png());
-	return png ? image_write_png(render->picture, &render->sheet.image, error)
-		   : image_write_pfm(render->picture, &render->sheet.image, error);
 }
 
 /* Shows the files, reports them, and writes the picture unless nothing or not everything could be tried. */
@@ -371,6 +413,23 @@ static int check_paths(struct render *render)
 	return -1;
 }
 
+/* Without a measurement there is nothing to fit, to compare, or to say in a table. */
+static int check_alone(const struct options *options)
+{
+	static const char *const of_tables[] = {"json", "table", "recursive", "difference",      "quantity", "gamut",
+						"bins", "row",   "max-theta", "zero-is-missing", NULL};
+	const bool json = options->from && outputs_end_with(options->from, ".json");
+	if (model_source_kind(options) != SOURCE_GIVEN && !json)
+		return options_usage(COMMAND_RENDER,
+				     "expected PATH..., found nothing; or a model: --kd and --ks, or --from FILE.json");
+	for (int i = 0; of_tables[i]; i++)
+		if (options_given(options, of_tables[i]))
+			return options_usage(COMMAND_RENDER, "--%s means nothing without a measurement", of_tables[i]);
+	if (!options->picture)
+		return options_usage(COMMAND_RENDER, "a model without a measurement needs -o FILE.png");
+	return -1;
+}
+
 static int check_picture(struct render *render, char **renamed)
 {
 	render->picture = render->options->picture;
@@ -399,6 +458,13 @@ static int check_picture(struct render *render, char **renamed)
 	return *renamed ? -1 : EXIT_FAILED;
 }
 
+static int show(struct render *render)
+{
+	if (render->options->transmission)
+		return show_glass(render);
+	return render->options->n_paths ? collect_and_show(render) : show_model(render);
+}
+
 int cmd_render(int argc, char **argv, atomic_bool *cancel)
 {
 	struct options options;
@@ -415,6 +481,8 @@ int cmd_render(int argc, char **argv, atomic_bool *cancel)
 		options.fit.n_ndf = 1;
 	if (code < 0 && !options.transmission)
 		code = model_source_check(&options, true);
+	if (code < 0 && !options.n_paths && !options.transmission)
+		code = check_alone(&options);
 	if (code < 0)
 		code = check_picture(&render, &renamed);
 	if (code < 0) {
@@ -425,7 +493,7 @@ int cmd_render(int argc, char **argv, atomic_bool *cancel)
 							.cancel = cancel,
 							.row_done = row_done,
 							.user = &render};
-		code = options.transmission ? show_glass(&render) : collect_and_show(&render);
+		code = show(&render);
 	}
 	environment_free(&render.environment);
 	sheet_free(&render.sheet);

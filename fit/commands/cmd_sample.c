@@ -25,12 +25,12 @@ static const struct csv_column columns[SAMPLE_COLUMNS] = {
 };
 
 /* Seen from somewhere, or not: wi.z = NaN. */
-static enum status add_sample(const struct described *item, enum sampling sampling, struct vec3 wi, double u1,
-			      double u2, struct csv_table *output)
+static enum status add_sample(const struct described *item, const struct distribution_sampler *sampler, struct vec3 wi,
+			      double u1, double u2, struct csv_table *output)
 {
 	const struct distribution *distribution = &item->distribution;
-	const struct vec3 m = distribution_sample(distribution, sampling, wi, u1, u2);
-	const double pdf = distribution_pdf(distribution, sampling, wi, m);
+	const struct vec3 m = distribution_sample(sampler, wi, u1, u2);
+	const double pdf = distribution_pdf(sampler, wi, m);
 	const double cos_d = vec3_dot(wi, m);
 	const struct vec3 wo = vec3_sub(vec3_scale(m, 2 * cos_d), wi);
 	const bool reflects = cos_d > 0; /* false for NaN */
@@ -52,27 +52,42 @@ static enum status add_sample(const struct described *item, enum sampling sampli
 	return csv_table_add(output, cell);
 }
 
+/* The way that --sampling names, or else the best that there is. */
+static enum status choose(const struct options *options, const struct described *item,
+			  struct distribution_sampler *sampler, struct error *error)
+{
+	const bool given = options_given(options, "sampling"), seen = !isnan(options->theta_i);
+	const bool visible = given || seen || item->distribution.is_ellipsoid;
+	enum sampling sampling = visible ? options->sampling : SAMPLING_NDF;
+	enum status status = distribution_sampler_init(sampler, &item->distribution, sampling);
+	if (status != STATUS_OK && !given && sampling != SAMPLING_NDF) {
+		sampling = SAMPLING_NDF;
+		status = distribution_sampler_init(sampler, &item->distribution, sampling);
+	}
+	if (status != STATUS_OK)
+		return error_set(error, STATUS_UNSUPPORTED, "%s has no --sampling %s%s", item->distribution.name,
+				 sampling_name(sampling),
+				 sampling == SAMPLING_RATIONAL ? ": that is for ggx, and gamma 2" : "");
+	if (sampling != SAMPLING_NDF && !seen)
+		return error_set(error, STATUS_DOMAIN, "visible normals need --theta-i");
+	return STATUS_OK;
+}
+
 static enum status draw(const struct options *options, const struct described *item, struct csv_table *output,
 			struct error *error)
 {
-	const struct vec3 wi = vec3_from_spherical_deg(options->theta_i, 0);
-	enum sampling sampling = options->sampling;
-	if (!options_given(options, "sampling") && !distribution_samples(&item->distribution, sampling))
-		sampling = SAMPLING_NDF;
-	if (!options_given(options, "sampling") && isnan(options->theta_i) && !item->distribution.is_ellipsoid)
-		sampling = SAMPLING_NDF;
-	if (!distribution_samples(&item->distribution, sampling))
-		return error_set(error, STATUS_UNSUPPORTED, "%s has no --sampling %s", item->distribution.name,
-				 sampling_name(sampling));
-	if (sampling == SAMPLING_VISIBLE && isnan(options->theta_i))
-		return error_set(error, STATUS_DOMAIN, "visible normals need --theta-i");
+	const struct vec3 wi = distribution_direction(options->theta_i, options->phi_i);
+	struct distribution_sampler sampler;
+	enum status status = choose(options, item, &sampler, error);
+	if (status != STATUS_OK)
+		return status;
 	gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-	enum status status = rng ? STATUS_OK : STATUS_NO_MEMORY;
+	status = rng ? STATUS_OK : STATUS_NO_MEMORY;
 	if (rng)
 		gsl_rng_set(rng, (unsigned long)options->fit.seed);
 	for (int i = 0; i < options->count && status == STATUS_OK; i++) {
 		const double u1 = gsl_rng_uniform(rng), u2 = gsl_rng_uniform(rng);
-		status = *options->cancel ? STATUS_INTERRUPTED : add_sample(item, sampling, wi, u1, u2, output);
+		status = *options->cancel ? STATUS_INTERRUPTED : add_sample(item, &sampler, wi, u1, u2, output);
 	}
 	if (rng)
 		gsl_rng_free(rng);

@@ -12,11 +12,13 @@ struct sums {
 	size_t n;
 };
 
-/* The entries of one row (theta_h, theta_d): measured m, model f and c = cos_i cos_o. */
+/* The entries of one row (theta_h, theta_d): measured m, the lobe of the model, and c = cos_i cos_o. Of a rich model `lobe` is not
+ * used: `f` has its values. */
 enum { ROW_MAX = 4 * 91 };
 struct row {
 	int n;
-	double c[ROW_MAX], lobe[ROW_MAX], m[MERL_CHANNELS][ROW_MAX];
+	bool rich;
+	double c[ROW_MAX], lobe[ROW_MAX], m[MERL_CHANNELS][ROW_MAX], f[MERL_CHANNELS][ROW_MAX];
 };
 
 /* Cube root to float precision, in a form that vectorises: a first guess from the exponent, two steps of Halley. */
@@ -37,18 +39,20 @@ static inline float cube_root(float x)
 	return x > 1e-36F ? y.f : 0;
 }
 
-static void sum_row(const struct row *row, const struct cook_torrance *model, double cell, struct sums *sums)
+/* A constant `rich` is folded in. */
+__attribute__((always_inline)) static inline void
+sum_values(const struct row *row, bool rich, const struct cook_torrance *model, double cell, struct sums *sums)
 {
 	const double offset = 1e-3; /* of the logarithmic metric */
 
 	for (int c = 0; c < MERL_CHANNELS; c++) {
-		const double kd = model->kd[c] / M_PI, ks = model->ks[c];
-		const double *m = row->m[c];
+		const double kd = rich ? 0 : model->kd[c] / M_PI, ks = rich ? 1 : model->ks[c];
+		const double *m = row->m[c], *lobe = rich ? row->f[c] : row->lobe;
 		double d_none = 0, d_cosine = 0, m_none = 0, m_cosine = 0, square = 0, root = 0;
 
 #pragma omp simd reduction(+ : d_none, d_cosine, m_none, m_cosine, square, root)
 		for (int n = 0; n < row->n; n++) {
-			const double f = kd + ks * row->lobe[n], w = row->c[n], r = error_term(1, m[n], f);
+			const double f = kd + ks * lobe[n], w = row->c[n], r = error_term(1, m[n], f);
 			const float step = cube_root((float)(w * m[n])) - cube_root((float)(w * f));
 
 			d_none += r;
@@ -63,7 +67,7 @@ static void sum_row(const struct row *row, const struct cook_torrance *model, do
 			double product = 1;
 
 			for (int a = n; a < n + 6 && a < row->n; a++) {
-				const double f = kd + ks * row->lobe[a];
+				const double f = kd + ks * lobe[a];
 				const double x = row->c[a] * m[a] + offset, y = row->c[a] * f + offset;
 
 				product *= x > y ? x / y : y / x;
@@ -82,9 +86,17 @@ static void sum_row(const struct row *row, const struct cook_torrance *model, do
 	sums->n += (size_t)row->n * MERL_CHANNELS;
 }
 
+static void sum_row(const struct row *row, const struct cook_torrance *model, double cell, struct sums *sums)
+{
+	if (row->rich)
+		sum_values(row, true, model, cell, sums);
+	else
+		sum_values(row, false, model, cell, sums);
+}
+
 /* Adds the valid entries of sample n to the row. */
 static void add_entries(struct row *row, const struct geometry *g, const struct measurement *measurement, int n,
-			double c, double lobe)
+			double c, double lobe, const double f[])
 {
 	int k[4];
 	const int count = geometry_members(g, n, k);
@@ -96,30 +108,55 @@ static void add_entries(struct row *row, const struct geometry *g, const struct 
 			continue;
 		row->c[row->n] = c;
 		row->lobe[row->n] = lobe;
-		for (int ch = 0; ch < MERL_CHANNELS; ch++)
+		for (int ch = 0; ch < MERL_CHANNELS; ch++) {
 			row->m[ch][row->n] = (double)measurement->value[ch][at];
+			if (row->rich)
+				row->f[ch][row->n] = f[ch];
+		}
 		row->n++;
 	}
 }
 
 /* The parts of a model that a table of (theta_h, theta_d, phi_d) asks for again and again. */
 struct parts {
-	struct masking masking;
-	double D[MERL_THETA_H], F[MERL_THETA_D];
+	struct lobe_parts {
+		struct masking masking;
+		double D[MERL_THETA_H];
+	} lobe[2];
+	double F[MERL_CHANNELS][MERL_THETA_D];
+	bool rich;
 };
+
+static enum status lobe_init(struct lobe_parts *lobe, const struct geometry *g, const struct ndf *ndf)
+{
+	for (int i = 0; i < MERL_THETA_H; i++)
+		lobe->D[i] = ndf_D(ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
+	if (masking_init(&lobe->masking, g->q_min, MASKING_FINE) != STATUS_OK)
+		return STATUS_NO_MEMORY;
+	if (g->criterion.gaf != GAF_V_GROOVE)
+		masking_fill(&lobe->masking, ndf);
+	return STATUS_OK;
+}
+
+static void parts_free(struct parts *parts)
+{
+	for (int l = 0; l < 2; l++)
+		masking_free(&parts->lobe[l].masking);
+}
 
 static enum status parts_init(struct parts *parts, const struct geometry *g, const struct cook_torrance *model)
 {
-	for (int i = 0; i < MERL_THETA_H; i++) {
-		parts->D[i] =
-			ndf_D(&model->ndf, (struct vec3){g->entries.theta[i].sin_h, 0, g->entries.theta[i].cos_h});
-		parts->F[i] = fresnel_F(model->fresnel, g->entries.theta[i].cos_d, model->n, model->k);
-	}
-	if (masking_init(&parts->masking, g->q_min, MASKING_FINE) != STATUS_OK)
-		return STATUS_NO_MEMORY;
-	if (g->criterion.gaf != GAF_V_GROOVE)
-		masking_fill(&parts->masking, &model->ndf);
-	return STATUS_OK;
+	*parts = (struct parts){.rich = cook_torrance_is_rich(model)};
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		for (int j = 0; j < MERL_THETA_D; j++)
+			parts->F[c][j] = cook_torrance_F(model, c, g->entries.theta[j].cos_d);
+	enum status status = lobe_init(&parts->lobe[0], g, &model->ndf);
+
+	if (status == STATUS_OK && cook_torrance_has_second(model))
+		status = lobe_init(&parts->lobe[1], g, &model->second);
+	if (status != STATUS_OK)
+		parts_free(parts);
+	return status;
 }
 
 static double cos_product(const struct geometry *g, int n)
@@ -131,16 +168,36 @@ static double cos_product(const struct geometry *g, int n)
 	return (a - b) * (a + b);
 }
 
-/* c: cos_i cos_o of sample n. */
-static double lobe_at(const struct parts *p, const struct geometry *g, int n, double c)
+/* D G / (4 cos_i cos_o) of sample n, c: cos_i cos_o, times a factor. */
+static double facets_at(const struct lobe_parts *p, const struct geometry *g, int n, double c, double factor)
 {
-	const double spread = p->D[g->row[n] / MERL_THETA_D] * p->F[g->row[n] % MERL_THETA_D];
+	const double spread = p->D[g->row[n] / MERL_THETA_D] * factor;
 
 	/* geometric_factor and w both carry the weight of the fit; geometric_factor alone has the v-groove's G. */
 	if (g->criterion.gaf == GAF_V_GROOVE)
 		return spread * (double)g->geometric_factor[n] / (double)g->w[n];
 	return cook_torrance_from_G1(g->criterion.gaf, spread, masking_at(&p->masking, g->q_i[n]),
 				     masking_at(&p->masking, g->q_o[n]), c);
+}
+
+/* The values of a rich model at sample n. */
+static void rich_at(const struct parts *p, const struct geometry *g, const struct cook_torrance *model, int n, double c,
+		    double f[MERL_CHANNELS])
+{
+	const int j = g->row[n] % MERL_THETA_D;
+	const double facets = facets_at(&p->lobe[0], g, n, c, 1);
+	const double second = cook_torrance_has_second(model) ? facets_at(&p->lobe[1], g, n, c, 1) : 0;
+	double grazing = 0;
+
+	if (cook_torrance_has_grazing(model)) {
+		struct vec3 wi, wo;
+
+		entries_dirs(&g->entries, g->row[n] / MERL_THETA_D, j, g->k[n], &wi, &wo);
+		grazing = cook_torrance_grazing(model->grazing, wi.z, wo.z, g->entries.theta[j].cos_d);
+	}
+	for (int ch = 0; ch < MERL_CHANNELS; ch++)
+		f[ch] = model->kd[ch] / M_PI + model->kg[ch] * grazing +
+			p->F[ch][j] * (model->ks[ch] * facets + model->ks_second[ch] * second);
 }
 
 static void add_sums(struct sums *all, const struct sums *sums)
@@ -158,12 +215,18 @@ static void add_sums(struct sums *all, const struct sums *sums)
 /* A scattered entry that takes part is a row of its own; no table is used. */
 static void sum_scattered(const struct scattered *s, const struct cook_torrance *model, size_t n, struct sums *sums)
 {
-	struct row row = {.n = 1};
+	struct row row = {.n = 1, .rich = cook_torrance_is_rich(model)};
+	double f[MERL_CHANNELS] = {0};
 
 	row.c[0] = s->wi[n].z * s->wo[n].z;
-	row.lobe[0] = cook_torrance_lobe(model, s->wi[n], s->wo[n]);
-	for (int c = 0; c < MERL_CHANNELS; c++)
+	if (row.rich)
+		cook_torrance_f(model, s->wi[n], s->wo[n], f);
+	else
+		row.lobe[0] = cook_torrance_lobe(model, s->wi[n], s->wo[n]);
+	for (int c = 0; c < MERL_CHANNELS; c++) {
 		row.m[c][0] = (double)s->value[c][n];
+		row.f[c][0] = f[c];
+	}
 	sum_row(&row, model, (double)s->solid_angle[n], sums);
 }
 
@@ -195,12 +258,16 @@ static void sum_theta_h(const struct geometry *g, const struct measurement *meas
 			const struct cook_torrance *model, const struct parts *parts, int i, bool by_row,
 			struct sums *sums)
 {
-	struct row row = {.n = 0};
+	struct row row = {.n = 0, .rich = parts->rich};
+	double f[MERL_CHANNELS] = {0};
 
 	for (int n = g->first[i]; n < g->first[i + 1]; n++) {
-		const double c = cos_product(g, n);
+		const double c = cos_product(g, n), F = parts->F[0][g->row[n] % MERL_THETA_D];
+		const double lobe = parts->rich ? 0 : facets_at(&parts->lobe[0], g, n, c, F);
 
-		add_entries(&row, g, measurement, n, c, lobe_at(parts, g, n, c));
+		if (parts->rich)
+			rich_at(parts, g, model, n, c, f);
+		add_entries(&row, g, measurement, n, c, lobe, f);
 		if (n + 1 == g->first[i + 1] || g->row[n + 1] != g->row[n]) {
 			const int j = g->row[n] % MERL_THETA_D;
 
@@ -221,7 +288,7 @@ static enum status sum_table(const struct geometry *g, const struct measurement 
 #pragma omp parallel for num_threads(threads) schedule(dynamic) if (threads > 1)
 	for (int i = 0; i < MERL_THETA_H; i++)
 		sum_theta_h(g, measurement, model, &parts, i, false, &sums[i]);
-	masking_free(&parts.masking);
+	parts_free(&parts);
 	for (int i = 0; i < MERL_THETA_H; i++)
 		add_sums(all, &sums[i]);
 	return STATUS_OK;
@@ -279,7 +346,7 @@ enum status metrics_rows(const struct geometry *g, const struct measurement *mea
 #pragma omp parallel for num_threads(threads) schedule(dynamic) if (threads > 1)
 		for (int i = 0; i < MERL_THETA_H; i++)
 			sum_theta_h(g, measurement, model, &parts, i, true, sums + (size_t)i * MERL_THETA_D);
-		masking_free(&parts.masking);
+		parts_free(&parts);
 	}
 	for (int n = 0; n < MERL_ROWS; n++)
 		row[n] = (struct metrics_row){sums[n].difference[g->criterion.weight],

@@ -29,7 +29,7 @@ struct fit_options fit_options_default(void)
 		.diffuse = true,
 		.specular = true,
 		.lobes = 1,
-		.grazing_exponent = 5,
+		.grazing_exponent = NAN,
 		.ior = NAN,
 		.gamma = NAN,
 		.sigma = NAN,

@@ -417,7 +417,7 @@ static double measured_share(const struct sample_set *table, size_t n)
 	return share / (total * table->unit);
 }
 
-/* Scales p so that the sum of min(1, p) is n_samples, or every p is 1. */
+/* Scales p so that their sum is n_samples, or every p is 1; none is above 1, for a sample is selected once. */
 static void scale_to(float *p, size_t count, double n_samples)
 {
 	for (int round = 0; round < 20; round++) {
@@ -435,6 +435,8 @@ static void scale_to(float *p, size_t count, double n_samples)
 		for (size_t n = 0; n < count; n++)
 			p[n] = p[n] >= 1 ? 1 : fminf(1, p[n] * (float)scale);
 	}
+	for (size_t n = 0; n < count; n++)
+		p[n] = fminf(1, p[n]);
 }
 
 static void copy_sample(struct sample_set *to, size_t b, const struct sample_set *from, size_t a, int members,

@@ -187,8 +187,8 @@ static void count_classes(struct tally *t, const struct half_row *row, const uns
 	}
 }
 
-/* The halves phi_d < 90 and > 90 degrees: an exchange of the directions, with a mirror image where the measurement has only
- * half a turn, maps one onto the other. */
+/* The halves phi_d < 90 and > 90 degrees: an exchange of the directions, with a mirror image where the measurement has
+ * only half a turn, maps one onto the other. */
 static void count_asymmetry(struct tally *t, const struct half_row *row, const float *partner, int step)
 {
 	double near[3] = {0, 0, 0}, far[3] = {0, 0, 0};
@@ -238,8 +238,8 @@ static void count_row(struct tally *t, int i, int j, const unsigned char class_o
 	}
 }
 
-/* The regression of ln value on ln(cos_i cos_o) within one theta_h: a diffuse table has slope 0, and the lobe, with its 1/(cos_i
- * cos_o) and its Fresnel term, a negative one. */
+/* The regression of ln value on ln(cos_i cos_o) within one theta_h: a diffuse table has slope 0, and the lobe, with its
+ * 1/(cos_i cos_o) and its Fresnel term, a negative one. */
 static void count_slope(struct tally *t, int i)
 {
 	double x = 0, y = 0, xx = 0, xy = 0;
@@ -282,8 +282,9 @@ static void count_all(struct tally *t)
 		count_slope(t, i);
 }
 
-/* The albedo at theta_i by an integral over the half vector, dw_o = 4 cos theta_d dw_h, whose theta_h are the rows of the
- * measurement: so no lobe is too narrow for it. Both halves of phi_h are the same entries or their mirror images. */
+/* The albedo at theta_i by an integral over the half vector, dw_o = 4 cos theta_d dw_h, whose theta_h are the rows of
+ * the measurement: so no lobe is too narrow for it. Both halves of phi_h are the same entries or their mirror
+ * images. */
 static void find_albedo(const struct tally *t, double theta_i, double albedo[MERL_CHANNELS], double *measured)
 {
 	const struct measurement *m = t->measurement;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* suspects - what looks wrong with a measurement before anything is fitted to it: holes stored as zeros, values in other
- * units, weighted values, mixed-up channels. Nothing is changed or left out. */
+/* suspects - what looks wrong with a measurement before anything is fitted to it: holes stored as zeros, values in
+ * other units, weighted values, mixed-up channels. Nothing is changed or left out. */
 #ifndef SUSPECTS_H
 #define SUSPECTS_H
 
@@ -24,22 +24,23 @@ enum { SUSPECTS_ALBEDOS = 3 };
 
 /* struct suspects - what was found, and what it was found by. */
 struct suspects {
-	unsigned found;    /* enum suspect */
-	double zero_share; /* of the valid entries in range: those that are 0 in all channels */
-	double ends_at;    /* degrees: the theta_i or theta_o beyond which nothing is measured, or all is 0; else NaN */
-	double asymmetry; /* mean relative difference of the two halves of a row that the exchange maps on one another */
-	int cosine;       /* SUSPECT_COSINE: 1 of theta_i, 2 of theta_o, 3 of both */
-	size_t n_spikes;  /* entries above 5 times each of their six neighbours, in one channel a row */
+	unsigned found;     /* enum suspect */
+	double zero_share;  /* of the valid entries in range: those that are 0 in all channels */
+	double ends_at;     /* degrees: the theta_i or theta_o beyond which nothing is measured or all is 0; NaN */
+	double asymmetry;   /* mean relative difference of the halves of a row that the exchange maps on one another */
+	int cosine;         /* SUSPECT_COSINE: 1 of theta_i, 2 of theta_o, 3 of both */
+	size_t n_spikes;    /* entries above 5 times each of their six neighbours, in one channel a row */
 	int n_clipped_rows; /* rows (theta_h, theta_d) that have a channel's largest value; of the channel with most */
 	/* The directional-hemispherical albedo at theta_i = 0, 30 and 60 degrees, integrated over what is measured; and
 	 * which share of the hemisphere that is, by the cosine of theta_o. */
 	double albedo[SUSPECTS_ALBEDOS][MERL_CHANNELS], measured[SUSPECTS_ALBEDOS];
 };
 
-/* suspects_find - looks at the entries that the criterion takes: its bins, max_theta and zero_is_missing. Some 3 ms; takes
- * no memory. The albedos are of all entries, whatever max_theta is. Of scattered entries the albedos, interpolated
- * [interpolant.h], and what they tell: bright and dark; they take some 30 ms, and of a sample that turns they are means over
- * its azimuths. ends_at is the largest theta_i or theta_o that was measured, NaN from 89 degrees on. STATUS_NO_MEMORY. */
+/* suspects_find - looks at the entries that the criterion takes: its bins, max_theta and zero_is_missing. Some 3 ms;
+ * takes no memory. The albedos are of all entries, whatever max_theta is. Of scattered entries the albedos,
+ * interpolated [interpolant.h], and what they tell: bright and dark; they take some 30 ms, and of a sample that turns
+ * they are means over its azimuths. ends_at is the largest theta_i or theta_o that was measured, NaN from 89 degrees
+ * on. STATUS_NO_MEMORY. */
 MUST_CHECK enum status suspects_find(const struct measurement *measurement, const struct criterion *criterion,
 				     struct suspects *suspects);
 

@@ -140,10 +140,13 @@ void export_describe(const struct export *export, char text[EXPORT_TEXT])
 	}
 	used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", %s G, %s F", gaf_name(model->gaf),
 			 fresnel_name(model->fresnel));
-	if (model->fresnel != FRESNEL_NONE)
+	if (fresnel_has_ior(model->fresnel))
 		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", n %s", csv_number(number, model->n));
 	if (model->fresnel == FRESNEL_CONDUCTOR)
-		snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", k %s", csv_number(number, model->k));
+		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", k %s", csv_number(number, model->k));
+	if (cook_torrance_has_second(model))
+		snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", and a second lobe, sigma %s",
+			 csv_number(number, model->second.sigma_x));
 }
 
 static void comment_line(FILE *file, const char *before, const char *text, const char *after)

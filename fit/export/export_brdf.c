@@ -637,7 +637,11 @@ static enum status brdf_write(const struct export *export, FILE *file, struct er
 
 static enum status brdf_prepare(struct export *export, struct error *error)
 {
-	(void)error;
+	if (cook_torrance_is_rich(&export->model))
+		return error_set(
+			error, STATUS_UNSUPPORTED,
+			"the shader has neither a second lobe nor a diffuse term of grazing directions nor f82 "
+			"(--format bsdf, merl and json have every model)");
 	return export_as_it_is(
 		export, "the model itself, in 32-bit floats (relative error 3e-6, in a tail where D is 1e-5 of its "
 			"peak 4e-5)");

@@ -14,7 +14,10 @@ static double warp_density(const void *context, struct vec3 m)
 	const double cosine = fmax(m.z, 0.2), sine = hypot(m.x, m.y);
 	const double scale = sine > 0 ? sqrt(1 - cosine * cosine) / sine : 0;
 	const struct vec3 raised = {scale * m.x, scale * m.y, cosine};
-	const double D = export_max(model->ks) > 0 ? ndf_D(&model->ndf, raised) : 0;
+	double D = export_max(model->ks) > 0 ? ndf_D(&model->ndf, raised) : 0;
+
+	if (cook_torrance_has_second(model))
+		D = 0.5 * (D + ndf_D(&model->second, raised));
 
 	return 0.5 * (D + 1 / M_PI);
 }

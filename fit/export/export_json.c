@@ -68,22 +68,50 @@ static void write_parameter(FILE *file, const char *before, const char *name, do
 	write_number(file, value);
 }
 
+static void write_parameters(FILE *file, const struct ndf *ndf)
+{
+	fputs("\"parameters\": {", file);
+	for (int i = 0; ndf_param_at(ndf->class, i); i++)
+		write_parameter(file, i ? ", " : "", ndf_param_at(ndf->class, i)->name, ndf->param[i]);
+	if (ndf->sigma_x != ndf->sigma_y) {
+		write_parameter(file, ", ", "sigma_y", ndf->sigma_y);
+		write_parameter(file, ", ", "angle", ndf->angle);
+	}
+	fputs("}", file);
+}
+
 static void write_ndf(FILE *file, const struct ndf *ndf)
 {
 	fprintf(file, "  \"ndf\": \"%s\",\n", ndf_name(ndf->class));
 	if (ndf_is_tabulated(ndf->class)) {
 		write_nodes(file, ndf->pwl);
 	} else {
-		fputs("  \"parameters\": {", file);
-		for (int i = 0; ndf_param_at(ndf->class, i); i++)
-			write_parameter(file, i ? ", " : "", ndf_param_at(ndf->class, i)->name, ndf->param[i]);
-		if (ndf->sigma_x != ndf->sigma_y) {
-			write_parameter(file, ", ", "sigma_y", ndf->sigma_y);
-			write_parameter(file, ", ", "angle", ndf->angle);
-		}
-		fputs("},\n", file);
+		fputs("  ", file);
+		write_parameters(file, ndf);
+		fputs(",\n", file);
 	}
 	fprintf(file, "  \"lambda\": \"%s\",\n", lambda_form_name(ndf->lambda_form));
+}
+
+/* What richer models have besides. */
+static void write_terms(FILE *file, const struct cook_torrance *model)
+{
+	static const char *const name[F82_PARTS] = {"f0", "f82", "f90"};
+	for (int i = 0; i < F82_PARTS && model->fresnel == FRESNEL_F82; i++) {
+		const double part[3] = {model->reflectance[0][i], model->reflectance[1][i], model->reflectance[2][i]};
+		write_rgb(file, name[i], part);
+	}
+	if (cook_torrance_has_grazing(model)) {
+		write_rgb(file, "kg", model->kg);
+		write_parameter(file, "  ", "exponent", model->grazing);
+		fputs(",\n", file);
+	}
+	if (cook_torrance_has_second(model)) {
+		write_rgb(file, "ks2", model->ks_second);
+		fputs("  \"second\": {", file);
+		write_parameters(file, &model->second);
+		fputs("},\n", file);
+	}
 }
 
 static void write_fitted(FILE *file, const struct export_source *source)
@@ -119,6 +147,7 @@ static enum status json_write(const struct export *export, FILE *file, struct er
 	fputs(",\n  \"k\": ", file);
 	write_number(file, model->k);
 	fputs(",\n", file);
+	write_terms(file, model);
 	write_fitted(file, &export->source);
 	fputs("}\n", file);
 	return STATUS_OK;

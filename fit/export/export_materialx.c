@@ -19,7 +19,8 @@
 static const struct target target = {
 	.name = "MaterialX",
 	.gaf = GAF_CORRELATED,
-	.fresnel = 1u << FRESNEL_DIELECTRIC | 1u << FRESNEL_CONDUCTOR | 1u << FRESNEL_SCHLICK | 1u << FRESNEL_NONE,
+	.fresnel = 1u << FRESNEL_DIELECTRIC | 1u << FRESNEL_CONDUCTOR | 1u << FRESNEL_SCHLICK | 1u << FRESNEL_NONE |
+		   1u << FRESNEL_F82,
 	.instead = FRESNEL_DIELECTRIC,
 	.sigma_max = 1,
 };
@@ -31,9 +32,10 @@ static double mean_fresnel(const struct cook_torrance *model)
 	double sum = 0;
 	for (int i = 0; i < N; i++) {
 		const double c = (i + 0.5) / N;
-		sum += 2 * c * fresnel_F(model->fresnel, c, model->n, model->k) / N;
+		for (int channel = 0; channel < 3; channel++)
+			sum += 2 * c * cook_torrance_F(model, channel, c) / N;
 	}
-	return sum;
+	return sum / 3;
 }
 
 /* Implementations are expected to give rough surfaces back what facets reflect more than once, by a factor on the lobe: by how
@@ -115,6 +117,22 @@ static const char *lobe_element(enum fresnel fresnel)
 	}
 }
 
+/* The node has the reflectance at c = 1/7 as a factor of what Schlick's form has there. */
+static void write_f82(FILE *file, const struct cook_torrance *model)
+{
+	double color0[3], color82[3], color90[3];
+	for (int c = 0; c < 3; c++) {
+		const double *F = model->reflectance[c], schlick = F[0] + (F[2] - F[0]) * pow(6.0 / 7, 5);
+		color0[c] = model->ks[c] * F[0];
+		color82[c] = schlick > 0 ? F[1] / schlick : 1;
+		color90[c] = model->ks[c] * F[2];
+	}
+	write_color(file, "color0", color0, 1);
+	write_color(file, "color82", color82, 1);
+	write_color(file, "color90", color90, 1);
+	write_number(file, "exponent", 5);
+}
+
 static void write_schlick(FILE *file, const struct cook_torrance *model)
 {
 	static const double white[3] = {1, 1, 1};
@@ -139,6 +157,8 @@ static void write_lobe(FILE *file, const struct cook_torrance *model, const char
 	} else if (model->fresnel == FRESNEL_DIELECTRIC) {
 		write_color(file, "tint", model->ks, 1);
 		write_number(file, "ior", model->n);
+	} else if (model->fresnel == FRESNEL_F82) {
+		write_f82(file, model);
 	} else {
 		write_schlick(file, model);
 	}

@@ -82,11 +82,19 @@ static enum status read_axes(const json_t *parameters, struct ndf *ndf)
 	return status != STATUS_OK ? status : ndf_turn(ndf, number_of(json_object_get(parameters, "angle")));
 }
 
+static enum status read_parameters(const json_t *json, const struct ndf_class *class, struct ndf *ndf)
+{
+	const json_t *parameters = json_object_get(json, "parameters");
+	double value[NDF_PARAMS_MAX];
+	for (int i = 0; ndf_param_at(class, i); i++)
+		value[i] = number_of(json_object_get(parameters, ndf_param_at(class, i)->name));
+	return ndf_init_params(ndf, class, value);
+}
+
 static enum status read_ndf(const json_t *json, struct model_json *read, struct error *error)
 {
 	const struct ndf_class *class = ndf_find(text_of(json, "ndf"));
 	const json_t *parameters = json_object_get(json, "parameters");
-	double value[NDF_PARAMS_MAX];
 	enum lambda_form form;
 	if (!class)
 		return bad("ndf", "the name of a distribution", error);
@@ -94,9 +102,7 @@ static enum status read_ndf(const json_t *json, struct model_json *read, struct 
 		return bad("lambda", "the name of a form of Lambda", error);
 	if (ndf_is_tabulated(class))
 		return read_nodes(json, read, error);
-	for (int i = 0; ndf_param_at(class, i); i++)
-		value[i] = number_of(json_object_get(parameters, ndf_param_at(class, i)->name));
-	if (ndf_init_params(&read->model.ndf, class, value) != STATUS_OK)
+	if (read_parameters(json, class, &read->model.ndf) != STATUS_OK)
 		return bad("parameters", "those of the distribution", error);
 	if (json_object_get(parameters, "sigma_y") && read_axes(parameters, &read->model.ndf) != STATUS_OK)
 		return bad("parameters", "sigma, sigma_y and angle of a distribution that can be anisotropic", error);
@@ -121,6 +127,44 @@ static enum status read_terms(const json_t *json, struct model_json *read, struc
 	fit->criterion.gaf = model->gaf;
 	fit->fresnel = model->fresnel;
 	fit->lambda = model->ndf.lambda_form;
+	return STATUS_OK;
+}
+
+static bool is_reflectance(const double rgb[3])
+{
+	return rgb[0] <= 1 && rgb[1] <= 1 && rgb[2] <= 1;
+}
+
+/* What richer models have besides. */
+static enum status read_rich(const json_t *json, struct cook_torrance *model, struct fit_options *fit,
+			     struct error *error)
+{
+	static const char *const name[F82_PARTS] = {"f0", "f82", "f90"};
+	enum status status = STATUS_OK;
+	for (int i = 0; i < F82_PARTS && status == STATUS_OK && model->fresnel == FRESNEL_F82; i++) {
+		double rgb[3];
+		status = read_rgb(json, name[i], rgb, error);
+		if (status == STATUS_OK && !is_reflectance(rgb))
+			status = bad(name[i], "three numbers from 0 to 1", error);
+		for (int c = 0; c < 3 && status == STATUS_OK; c++)
+			model->reflectance[c][i] = rgb[c];
+	}
+	fit->grazing = json_object_get(json, "kg");
+	fit->lobes = json_object_get(json, "ks2") ? 2 : 1;
+	if (status == STATUS_OK && fit->grazing)
+		status = read_rgb(json, "kg", model->kg, error);
+	if (status == STATUS_OK && fit->lobes > 1)
+		status = read_rgb(json, "ks2", model->ks_second, error);
+	if (status != STATUS_OK)
+		return status;
+	model->grazing = fit->grazing ? number_of(json_object_get(json, "exponent")) : 0;
+	if (fit->grazing && !(model->grazing >= FIT_GRAZING_MIN && model->grazing <= FIT_GRAZING_MAX))
+		return bad("exponent", "a number from 1 to 20", error);
+	if (fit->lobes < 2)
+		return STATUS_OK;
+	if (ndf_is_tabulated(model->ndf.class) ||
+	    read_parameters(json_object_get(json, "second"), model->ndf.class, &model->second) != STATUS_OK)
+		return bad("second", "an object with the parameters of a distribution of the same kind", error);
 	return STATUS_OK;
 }
 
@@ -157,6 +201,8 @@ static enum status read_model(const json_t *json, struct model_json *read, struc
 		status = read_ndf(json, read, error);
 	if (status == STATUS_OK)
 		status = read_terms(json, read, fit, error);
+	if (status == STATUS_OK)
+		status = read_rich(json, &read->model, fit, error);
 	return status != STATUS_OK ? status : read_fitted(json, read, fit, error);
 }
 

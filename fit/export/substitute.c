@@ -46,8 +46,13 @@ bool substitute_needed(const struct target *target, const struct cook_torrance *
 {
 	char text[EXPORT_TEXT] = "";
 	struct ndf plain;
-	if (!(export_max(model->ks) > 0))
+	const bool grazing = cook_torrance_has_grazing(model);
+	if (!(export_max(model->ks) > 0) && !grazing)
 		return false;
+	if (cook_torrance_has_second(model))
+		add_text(text, " no second lobe,");
+	if (grazing)
+		add_text(text, " no diffuse term of grazing directions,");
 	if (!ndf_plain(&model->ndf, &plain) || (is_beckmann(&plain) && !target->beckmann))
 		describe_ndf(&model->ndf, text);
 	if (model->gaf != target->gaf)
@@ -102,7 +107,9 @@ static struct fit_options options_for(const struct target *target, const struct 
 	fit.lambda = LAMBDA_EXACT;
 	fit.sigma = fit.sigma_y = fit.angle = fit.gamma = fit.ior = NAN;
 	fit.anisotropic = export_has_axes(model);
-	fit.diffuse = export_max(model->kd) > 0;
+	fit.diffuse = export_max(model->kd) > 0 || cook_torrance_has_grazing(model);
+	fit.grazing = false;
+	fit.lobes = 1;
 	fit.specular = true;
 	fit.unbounded = false;
 	fit.gray = is_gray(model->kd) && is_gray(model->ks);

@@ -34,7 +34,7 @@ static double theta_d_deg(enum bins bins, int j)
 
 static double phi_d_deg(enum bins bins, enum slice_phi_d k)
 {
-	return degrees(bins_angles(bins, 0, 0, k).phi_d);
+	return degrees(bins_angles(bins, 0, 0, (int)k).phi_d);
 }
 
 static enum bins bins_of(const struct material_data *data)

@@ -5,7 +5,7 @@
 void slice_measured(const struct measurement *measurement, enum slice_phi_d phi_d, int i, int j,
 		    double m[MERL_CHANNELS])
 {
-	const size_t at = measurement_at(measurement->n_phi_d, i, j, phi_d);
+	const size_t at = measurement_at(measurement->n_phi_d, i, j, (int)phi_d);
 
 	for (int c = 0; c < MERL_CHANNELS; c++)
 		m[c] = (double)measurement->value[c][at];
@@ -16,7 +16,7 @@ void slice_model(const struct cook_torrance *model, enum bins bins, enum slice_p
 {
 	struct vec3 wi, wo;
 
-	halfdiff_trig_dirs(bins_trig(bins, i, j, phi_d), &wi, &wo);
+	halfdiff_trig_dirs(bins_trig(bins, i, j, (int)phi_d), &wi, &wo);
 	if (wi.z > 0 && wo.z > 0)
 		cook_torrance_f(model, wi, wo, f);
 	else

@@ -66,3 +66,12 @@ void pictures_free(struct pictures *p)
 	free(p->error);
 	*p = (struct pictures){0};
 }
+
+enum status pictures_render_model(const struct cook_torrance *model, enum sampling sampling,
+				  const struct environment *environment, const struct sphere_options *options,
+				  struct sphere *sphere)
+{
+	struct sphere_options with_axes = *options;
+	with_axes.tangents = model->ndf.sigma_x != model->ndf.sigma_y;
+	return render(model, NULL, sampling, environment, &with_axes, sphere);
+}

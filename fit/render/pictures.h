@@ -27,4 +27,9 @@ MUST_CHECK enum status pictures_render(const struct measurement *measurement, en
 				       struct pictures *pictures);
 void pictures_free(struct pictures *pictures);
 
+/* pictures_render_model - the sphere of one model alone, to be freed with sphere_free(). Returns as sphere_render(). */
+MUST_CHECK enum status pictures_render_model(const struct cook_torrance *model, enum sampling sampling,
+					     const struct environment *environment,
+					     const struct sphere_options *options, struct sphere *sphere);
+
 #endif

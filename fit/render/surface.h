@@ -8,23 +8,30 @@
 #include "src/cook_torrance.h"
 #include "src/sampling.h"
 
+enum { SURFACE_LOBES = 2 };
+
 struct surface {
-	const struct cook_torrance *model; /* borrowed; directions are sampled by its lobe */
+	const struct cook_torrance *model; /* borrowed; directions are sampled by its lobes */
 	const struct measured *measured;   /* borrowed; what light does, instead of the model. NULL: the model */
-	struct ndf exact;                  /* the model's NDF with the exact Lambda, as it is sampled */
-	bool visible;
-	struct masking masking; /* G1 */
+	struct surface_lobe {
+		const struct ndf *ndf; /* of the model; NULL: it has no such lobe */
+		struct sampler sampler;
+		bool own;               /* it draws the model's own normals, whose D is at hand */
+		struct masking masking; /* G1 */
+	} lobe[SURFACE_LOBES];
 };
 
 /* struct view - what depends on the view direction alone. */
 struct view {
 	struct vec3 wo;
-	double G1;       /* of the model */
-	double G1_exact; /* of surface.exact */
-	double specular; /* share of the lobe among the sampled directions; the rest is cosine distributed */
+	struct view_lobe {
+		double G1;       /* of the model */
+		double G1_exact; /* of the sampler's NDF, if that is the model's own */
+		double share;    /* among the sampled directions; the rest is cosine distributed */
+	} lobe[SURFACE_LOBES];
 };
 
-/* surface_init - where the NDF has no sampler of visible normals (vndf_supports()), all are sampled.
+/* surface_init - where the NDF cannot be sampled so (sampler_init()), visible normals are, or else all.
  * STATUS_NO_MEMORY. What is borrowed must outlive the surface. */
 MUST_CHECK enum status surface_init(struct surface *surface, const struct cook_torrance *model,
 				    const struct measured *measured, enum sampling sampling);

@@ -45,8 +45,8 @@ void csv_write_row(FILE *file, char *const *cell, int n_columns);
 /* csv_write - header and all rows. */
 void csv_write(FILE *file, const struct csv_table *table);
 
-/* csv_is_name - whether a file of this name is a table: it ends in .csv, in letters of either case, and does not hold samples
- * of a measurement. */
+/* csv_is_name - whether a file of this name is a table: it ends in .csv, in letters of either case, and does not hold
+ * samples of a measurement. */
 bool csv_is_name(const char *path);
 
 #endif

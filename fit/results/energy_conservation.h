@@ -15,7 +15,8 @@ struct energy_conservation {
 
 struct energy_conservation energy_conservation_of(const struct cook_torrance *model);
 
-/* energy_conservation_name - "gain" if a channel sends back more than it gets, else "ok"; "" where the albedo is not known. */
+/* energy_conservation_name - "gain" if a channel sends back more than it gets, else "ok"; "" where the albedo is not
+ * known. */
 const char *energy_conservation_name(const struct energy_conservation *energy);
 
 /* energy_conservation_furnace - the white-furnace balance, NaN where energy.h has none. */

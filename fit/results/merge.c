@@ -133,8 +133,8 @@ static enum status check_origin(const struct merge *m, struct error *error)
 	return STATUS_OK;
 }
 
-/* Two rows of one file: both say the same of its bytes, and of one fit there is one result. Returns whether they are the
- * same row in *same. */
+/* Two rows of one file: both say the same of its bytes, and of one fit there is one result. Returns whether they are
+ * the same row in *same. */
 static enum status check_pair(const struct merge *m, const struct merge_part *a, const struct merge_part *b, bool *same,
 			      struct error *error)
 {

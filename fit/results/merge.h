@@ -28,10 +28,10 @@ struct merge_files {
 };
 
 /* merge_tables - reads the tables m->path[0] to m->path[m->n_paths - 1] and puts their rows in order, equal ones once.
- * All rows must come from one version and the same options (but for the weight), rows of one file from the same bytes, and every
- * file must have rows of the same weights and NDFs. files: NULL, or the rows must be those of these files and of no others.
- * Errors: STATUS_IO, STATUS_NO_MEMORY, STATUS_FORMAT (tables that do not fit each other), STATUS_NO_DATA (no row, or none
- * of a file). merge_free() is due in any case. */
+ * All rows must come from one version and the same options (but for the weight), rows of one file from the same bytes,
+ * and every file must have rows of the same weights and NDFs. files: NULL, or the rows must be those of these files and
+ * of no others. Errors: STATUS_IO, STATUS_NO_MEMORY, STATUS_FORMAT (tables that do not fit each other), STATUS_NO_DATA
+ * (no row, or none of a file). merge_free() is due in any case. */
 MUST_CHECK enum status merge_tables(struct merge *m, const struct merge_files *files, struct error *error);
 /* merge_free - releases the rows; harmless when nothing was read. */
 void merge_free(struct merge *m);

@@ -55,6 +55,24 @@ const struct csv_column result_columns[RESULT_COLUMNS] = {
 	[RESULT_SIGMA_Y] = {"sigma_y", true},
 	[RESULT_ANGLE] = {"angle", true},
 	[RESULT_ERROR_ISOTROPIC] = {"error_isotropic", true},
+	[RESULT_KG_R] = {"kg_r", true},
+	[RESULT_KG_G] = {"kg_g", true},
+	[RESULT_KG_B] = {"kg_b", true},
+	[RESULT_EXPONENT] = {"exponent", true},
+	[RESULT_F0_R] = {"f0_r", true},
+	[RESULT_F0_G] = {"f0_g", true},
+	[RESULT_F0_B] = {"f0_b", true},
+	[RESULT_F82_R] = {"f82_r", true},
+	[RESULT_F82_G] = {"f82_g", true},
+	[RESULT_F82_B] = {"f82_b", true},
+	[RESULT_F90_R] = {"f90_r", true},
+	[RESULT_F90_G] = {"f90_g", true},
+	[RESULT_F90_B] = {"f90_b", true},
+	[RESULT_KS2_R] = {"ks2_r", true},
+	[RESULT_KS2_G] = {"ks2_g", true},
+	[RESULT_KS2_B] = {"ks2_b", true},
+	[RESULT_SIGMA2] = {"sigma2", true},
+	[RESULT_GAMMA2] = {"gamma2", true},
 	[RESULT_SUSPECTS] = {"suspects", false},
 };
 
@@ -218,23 +236,49 @@ static void set_axes(struct row *row, const struct fit_result *result)
 		set_number(row, RESULT_ERROR_ISOTROPIC, result->error_isotropic);
 }
 
+static void set_channels(struct row *row, enum result_column first, const double value[3])
+{
+	for (int c = 0; c < 3; c++)
+		set_number(row, first + (enum result_column)c, value[c]);
+}
+
+/* What a model has of more terms than two. */
+static void set_terms(struct row *row, const struct fit_options *options, const struct fit_result *result)
+{
+	const struct cook_torrance *model = &result->model;
+	if (options->grazing) {
+		set_channels(row, RESULT_KG_R, model->kg);
+		set_number(row, RESULT_EXPONENT, model->grazing);
+	}
+	for (int i = 0; i < F82_PARTS && result->specular && model->fresnel == FRESNEL_F82; i++)
+		for (int c = 0; c < 3; c++)
+			set_number(row, RESULT_F0_R + (enum result_column)(3 * i + c), model->reflectance[c][i]);
+	if (result->specular && options->lobes > 1) {
+		set_channels(row, RESULT_KS2_R, model->ks_second);
+		if (!cook_torrance_has_second(model))
+			return; /* one lobe was best */
+		set_number(row, RESULT_SIGMA2, model->second.sigma_x);
+		set_number(row, RESULT_GAMMA2, model->second.gamma);
+	}
+}
+
 static void set_model(struct row *row, const struct fit_options *options, const struct fit_result *result,
 		      char params[PARAMS_SIZE])
 {
 	const struct cook_torrance *model = &result->model;
-	for (int c = 0; c < 3 && result->diffuse; c++)
-		set_number(row, RESULT_KD_R + (enum result_column)c, model->kd[c]);
+	if (result->diffuse)
+		set_channels(row, RESULT_KD_R, model->kd);
+	set_terms(row, options, result);
 	if (!result->specular)
 		return;
-	for (int c = 0; c < 3; c++)
-		set_number(row, RESULT_KS_R + (enum result_column)c, model->ks[c]);
+	set_channels(row, RESULT_KS_R, model->ks);
 	if (options->anisotropic)
 		set_axes(row, result);
 	if (ndf_is_tabulated(model->ndf.class))
 		set_nodes(options, &model->ndf, params);
 	else
 		set_ndf(row, &model->ndf, params);
-	if (model->fresnel != FRESNEL_NONE)
+	if (fresnel_has_ior(model->fresnel))
 		set_number(row, RESULT_IOR, model->n);
 	if (model->fresnel == FRESNEL_CONDUCTOR)
 		add_param(params, "k", model->k);
@@ -277,13 +321,13 @@ static void set_energy_conservation(struct row *row, const struct cook_torrance 
 	row->cell[RESULT_ENERGY] = energy_conservation_name(&energy);
 }
 
-enum { NAMES_SIZE = 64, STATUS_SIZE = NAMES_SIZE + 16 };
+enum { NAMES_SIZE = 96, STATUS_SIZE = NAMES_SIZE + 16 };
 
 /* The names of enum fit_bound's bits. */
 static const char *names_text(char text[NAMES_SIZE], unsigned bits)
 {
-	static const char *const name[] = {"sigma", "gamma", "ior",  "kd_r", "kd_g", "kd_b",
-					   "ks_r",  "ks_g",  "ks_b", "k",    "angle"};
+	static const char *const name[] = {"sigma", "gamma", "ior", "kd_r",  "kd_g",     "kd_b",   "ks_r",
+					   "ks_g",  "ks_b",  "k",   "angle", "exponent", "sigma2", "gamma2"};
 	char *at = text;
 	*at = '\0';
 	for (size_t b = 0; b < sizeof name / sizeof *name; b++) {
@@ -530,6 +574,45 @@ static enum status result_ndf(char *const *row, const struct ndf_class *class, s
 	return form == LAMBDA_EXACT ? STATUS_OK : ndf_set_lambda_form(ndf, form);
 }
 
+/* The terms beyond two of a row, RESULT_COLUMNS where they are whole, else the column to blame. */
+static enum result_column result_terms(char *const *row, struct cook_torrance *model, struct fit_options *options)
+{
+	const bool f82 = model->fresnel == FRESNEL_F82 && *row[RESULT_KS_R];
+	options->grazing = *row[RESULT_EXPONENT];
+	options->lobes = *row[RESULT_KS2_R] ? 2 : 1;
+	model->grazing = number_or(row, RESULT_EXPONENT, 0);
+	if (options->grazing && !(model->grazing >= FIT_GRAZING_MIN && model->grazing <= FIT_GRAZING_MAX))
+		return RESULT_EXPONENT;
+	for (enum result_column c = 0; c < 3; c++) {
+		if (!is_factor(row, RESULT_KG_R + c, RESULT_EXPONENT))
+			return RESULT_KG_R + c;
+		if (!is_factor(row, RESULT_KS2_R + c, RESULT_KS2_R))
+			return RESULT_KS2_R + c;
+		model->kg[c] = number_or(row, RESULT_KG_R + c, 0);
+		model->ks_second[c] = number_or(row, RESULT_KS2_R + c, 0);
+		for (int i = 0; i < F82_PARTS; i++) {
+			const enum result_column at = RESULT_F0_R + (enum result_column)(3 * i) + c;
+			model->reflectance[c][i] = number_or(row, at, 0);
+			if (!*row[at] != !f82 || !(model->reflectance[c][i] >= 0 && model->reflectance[c][i] <= 1))
+				return at;
+		}
+	}
+	return RESULT_COLUMNS;
+}
+
+/* The second lobe of a row, of the same kind as the first. */
+static enum result_column result_second(char *const *row, struct cook_torrance *model)
+{
+	struct shape shape = {.sigma = result_number(row, RESULT_SIGMA2),
+			      .gamma = number_or(row, RESULT_GAMMA2, model->ndf.gamma)};
+	if (!cook_torrance_has_second(model))
+		return RESULT_COLUMNS;
+	if (!(shape.sigma >= NDF_SIGMA_MIN && shape.sigma <= NDF_SIGMA_MAX))
+		return RESULT_SIGMA2;
+	return shape_ndf(&shape, model->ndf.class, LAMBDA_EXACT, &model->second) == STATUS_OK ? RESULT_COLUMNS
+											      : RESULT_GAMMA2;
+}
+
 enum status result_model(char *const *row, struct cook_torrance *model, struct fit_options *options, struct pwl **pwl,
 			 struct error *error)
 {
@@ -560,21 +643,24 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 		model->kd[c] = number_or(row, RESULT_KD_R + c, 0);
 		model->ks[c] = number_or(row, RESULT_KS_R + c, 0);
 	}
-	if (!(model->n > 0 && !isinf(model->n)) || (options->fresnel != FRESNEL_NONE && is_missing(row, RESULT_IOR)))
+	if (!(model->n > 0 && !isinf(model->n)) || (fresnel_has_ior(options->fresnel) && is_missing(row, RESULT_IOR)))
 		return bad_cell(row, RESULT_IOR, error);
 	if (options->fresnel == FRESNEL_CONDUCTOR && *row[RESULT_KS_R] &&
 	    !(result_param(row[RESULT_PARAMS], "k", &model->k) && model->k >= 0))
 		return bad_cell(row, RESULT_PARAMS, error);
 	model->gaf = options->criterion.gaf;
 	model->fresnel = options->fresnel;
-	enum result_column wrong;
+	enum result_column wrong = result_terms(row, model, options);
+	if (wrong != RESULT_COLUMNS)
+		return bad_cell(row, wrong, error);
 	if (ndf_is_tabulated(ndf))
 		return result_nodes(row, options->criterion.bins, &model->ndf, pwl) != STATUS_OK
 			       ? bad_cell(row, RESULT_PARAMS, error)
 			       : STATUS_OK;
 	if (result_ndf(row, ndf, &model->ndf, &wrong) != STATUS_OK)
 		return bad_cell(row, wrong, error);
-	return STATUS_OK;
+	wrong = result_second(row, model);
+	return wrong == RESULT_COLUMNS ? STATUS_OK : bad_cell(row, wrong, error);
 }
 
 int result_order(const void *a, const void *b)

@@ -31,8 +31,8 @@ MUST_CHECK enum status store_open(struct store *store, const char *path, bool re
  * are not known), options and version, for the NDF of that name (NULL: for some NDF) that did not fail. Safe from
  * several threads. */
 bool store_has(const struct store *store, const struct result_source *source, const char *ndf);
-/* store_drop_stale - the old rows of a path will not be kept for which store_has() holds with none of these n >= 1 sources,
- * all of that path. */
+/* store_drop_stale - the old rows of a path will not be kept for which store_has() holds with none of these n >= 1
+ * sources, all of that path. */
 void store_drop_stale(struct store *store, const struct result_source *source, int n);
 
 /* store_begin - writes the header line, if it is not there, as the first row would bring it. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/search/anisotropic.h"
+#include "fit/search/grid_starts.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -7,12 +8,6 @@
 static const double stretches[] = {0.25, 0.6, 1, 1.6, 2.5};
 static const double factors[] = {0.45, 0.7, 1, 1.5};
 enum { STRETCHES = 5, FACTORS = 4, ANGLES = 12, GRID = STRETCHES * FACTORS * ANGLES };
-
-struct candidate {
-	struct shape shape;
-	double error;
-	int index;
-};
 
 static struct shape grid_shape(const struct shape *isotropic, int index)
 {
@@ -22,15 +17,6 @@ static struct shape grid_shape(const struct shape *isotropic, int index)
 	shape.stretch = stretches[index / FACTORS % STRETCHES];
 	shape.angle = 15.0 * (index / FACTORS / STRETCHES) - 75;
 	return shape;
-}
-
-static int by_error(const void *a, const void *b)
-{
-	const struct candidate *p = a, *q = b;
-
-	if (p->error != q->error)
-		return p->error < q->error ? -1 : 1;
-	return p->index - q->index;
 }
 
 /* Whether two are next to each other, the mean roughness aside: in the plane of the coordinates of space.h. */
@@ -57,7 +43,7 @@ int anisotropic_starts(const struct multiresolution *multiresolution, const stru
 		       const struct ndf_class *class, const struct shape *isotropic, struct shape start[], int count,
 		       long *evaluations, enum status *status)
 {
-	struct candidate *grid = malloc(GRID * sizeof *grid);
+	struct grid_candidate *grid = malloc(GRID * sizeof *grid);
 	struct objective o;
 	int n = 0, kept = 0;
 
@@ -66,7 +52,7 @@ int anisotropic_starts(const struct multiresolution *multiresolution, const stru
 	for (int i = 0; i < GRID && *status == STATUS_OK && !fit_cancelled(options); i++) {
 		struct linear linear;
 
-		grid[n] = (struct candidate){.shape = grid_shape(isotropic, i), .index = i};
+		grid[n] = (struct grid_candidate){.shape = grid_shape(isotropic, i), .index = i};
 		if (!allowed(options, &grid[n].shape))
 			continue;
 		grid[n].error = objective_eval(&o, &grid[n].shape, 2e-3, false, &linear);
@@ -74,16 +60,8 @@ int anisotropic_starts(const struct multiresolution *multiresolution, const stru
 	}
 	if (*status == STATUS_OK) {
 		objective_free(&o);
-		qsort(grid, (size_t)n, sizeof *grid, by_error);
 		*evaluations += n;
-	}
-	for (int i = 0; i < n && kept < count; i++) {
-		bool repeats = false;
-
-		for (int m = 0; m < kept && !repeats; m++)
-			repeats = near(&grid[i].shape, &start[m]);
-		if (!repeats)
-			start[kept++] = grid[i].shape;
+		kept = grid_starts_choose(grid, n, near, start, count);
 	}
 	free(grid);
 	return kept;

@@ -5,6 +5,7 @@
 #include "fit/search/anisotropic.h"
 #include "fit/search/free_form.h"
 #include "fit/search/options_check.h"
+#include "fit/search/second_lobe.h"
 #include "fit/search/undetermined.h"
 #include <math.h>
 #include <stdlib.h>
@@ -109,7 +110,8 @@ static unsigned bounds_of(const struct fit_result *r, const struct fit_options *
 		if (gamma && isnan(o->gamma) &&
 		    on_bound(m->ndf.gamma - gamma->min, gamma->search_min - gamma->min, gamma->search_max - gamma->min))
 			bits |= BOUND_GAMMA;
-		if (o->fresnel != FRESNEL_NONE && isnan(o->ior) && on_bound(m->n - 1, FIT_IOR_MIN - 1, FIT_IOR_MAX - 1))
+		if (fresnel_has_ior(o->fresnel) && isnan(o->ior) &&
+		    on_bound(m->n - 1, FIT_IOR_MIN - 1, FIT_IOR_MAX - 1))
 			bits |= BOUND_IOR;
 		if (o->fresnel == FRESNEL_CONDUCTOR && on_bound(m->k, 0, FIT_K_MAX))
 			bits |= BOUND_K;
@@ -117,7 +119,8 @@ static unsigned bounds_of(const struct fit_result *r, const struct fit_options *
 	for (int c = 0; c < MERL_CHANNELS; c++) {
 		if (o->diffuse && (m->kd[c] <= 0 || m->kd[c] >= objective_upper_bound(o, false)))
 			bits |= (unsigned)BOUND_KD_R << c;
-		if (o->specular && (m->ks[c] <= 0 || m->ks[c] >= objective_upper_bound(o, true)))
+		if (o->specular && o->fresnel != FRESNEL_F82 &&
+		    (m->ks[c] <= 0 || m->ks[c] >= objective_upper_bound(o, true)))
 			bits |= (unsigned)BOUND_KS_R << c;
 	}
 	return bits;
@@ -152,20 +155,49 @@ static enum status result_with_ndf(const struct run *run, const struct found *fo
 	return STATUS_OK;
 }
 
+/* The sharper lobe comes first, and one lobe is the first. */
+static void order_lobes(struct cook_torrance *m)
+{
+	const bool has_first = m->ks[0] > 0 || m->ks[1] > 0 || m->ks[2] > 0;
+
+	if (!cook_torrance_has_second(m) || (has_first && m->ndf.sigma_x <= m->second.sigma_x))
+		return;
+	const struct ndf ndf = m->ndf;
+
+	m->ndf = m->second;
+	m->second = ndf;
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		const double ks = m->ks[c];
+
+		m->ks[c] = m->ks_second[c];
+		m->ks_second[c] = ks;
+	}
+}
+
 static enum status result_of(const struct run *run, const struct ndf_class *class, const struct found *found,
 			     struct fit_result *r)
 {
 	enum status status;
 
 	*r = (struct fit_result){.pwl = NULL};
+	r->model.grazing = found->shape.grazing;
 	status = shape_ndf(&found->shape, class, run->options->lambda, &r->model.ndf);
+	if (status == STATUS_OK && run->options->lobes > 1) {
+		const struct shape second = shape_second(&found->shape);
+
+		status = shape_ndf(&second, class, run->options->lambda, &r->model.second);
+	}
 	if (status == STATUS_OK && run->options->anisotropic && !isnan(run->options->sigma_y)) {
 		/* As they were given, to the last bit. */
 		r->model.ndf.sigma_x = r->model.ndf.param[0] = run->options->sigma;
 		r->model.ndf.sigma_y = run->options->sigma_y;
 		status = ndf_turn(&r->model.ndf, found->shape.angle);
 	}
-	return status == STATUS_OK ? result_with_ndf(run, found, r) : status;
+	if (status == STATUS_OK)
+		status = result_with_ndf(run, found, r);
+	if (status == STATUS_OK)
+		order_lobes(&r->model);
+	return status;
 }
 
 /* Nested distributions: at these values of gamma a class is a simpler one, of the same sigma. */
@@ -535,11 +567,138 @@ static enum status fit_anisotropic(const struct run *run, const struct ndf_class
 	return status;
 }
 
+/* The same without what a richer model has last. Returns false where it has nothing that could be left out. */
+static bool leave_out(struct fit_options *options)
+{
+	if (options->lobes > 1)
+		options->lobes = 1;
+	else if (options->grazing)
+		options->grazing = false;
+	else if (options->fresnel == FRESNEL_F82 && options->specular)
+		options->fresnel = FRESNEL_SCHLICK;
+	else
+		return false;
+	return true;
+}
+
+/* A result of a simpler model, as one of the richer kind. */
+static void take_simpler(const struct run *run, struct fit_result *r, const struct fit_result *simpler)
+{
+	struct fit_result selected = *simpler;
+	struct cook_torrance *m = &selected.model;
+
+	if (simpler->error >= r->error)
+		return;
+	/* Schlick's term in the words of the three reflectances. */
+	for (int c = 0; c < MERL_CHANNELS && run->options->fresnel == FRESNEL_F82 && m->fresnel == FRESNEL_SCHLICK;
+	     c++) {
+		m->reflectance[c][0] = m->ks[c] * fresnel_schlick(1, m->n);
+		m->reflectance[c][1] = m->ks[c] * fresnel_schlick(1.0 / 7, m->n);
+		m->reflectance[c][2] = m->ks[c];
+		m->ks[c] = 1;
+	}
+	m->fresnel = run->options->fresnel;
+	keep_effort(&selected, r);
+	*r = selected;
+}
+
+static enum status fit_class(const struct run *run, const struct ndf_class *class, struct nested *nested,
+			     struct fit_result *r);
+
+/* Where the search of a richer model may begin: at what the simpler one ended with, and, where there is a second lobe, at both of
+ * the same kind that a nested distribution has, and with one lobe beside it. */
+static int richer_starts(const struct run *run, const struct ndf_class *class, const struct fit_result *simpler,
+			 struct nested *nested, struct shape start[], long *evaluations, enum status *status)
+{
+	const struct nesting nesting = nesting_of(run, class);
+	int count = 1;
+
+	start[0] = shape_of(&simpler->model);
+	if (isnan(start[0].grazing) || start[0].grazing < FIT_GRAZING_MIN)
+		start[0].grazing = isnan(run->options->grazing_exponent) ? 5 : run->options->grazing_exponent;
+	if (run->options->lobes < 2)
+		return count;
+	for (int n = 0; n < NESTED && *status == STATUS_OK; n++) {
+		struct fit_result inner;
+
+		if (isnan(nesting.gamma[n]))
+			continue;
+		*status = fit_class(run, ndf_find(nested_name[n]), nested, &inner);
+		start[count] = shape_of(&inner.model);
+		start[count].gamma = start[count].second_gamma = nesting.gamma[n];
+		count++;
+	}
+	if (*status != STATUS_OK)
+		return 0;
+	/* The last nested one takes the place of the shape of one lobe where it has two. */
+	if (count > 1 && start[count - 1].second_sigma > 0)
+		start[0] = start[--count];
+	const struct shape one = shape_of(&simpler->model);
+
+	return count + second_lobe_starts(&run->multiresolution, run->options, class, &one, start + count,
+					  SEARCH_GIVEN - count, evaluations, status);
+}
+
+/* A richer model: the simpler one first. With one lobe there is a scan of its own as well. A richer model never loses. */
+static enum status fit_richer(const struct run *run, const struct ndf_class *class,
+			      const struct fit_options *simpler_options, struct nested *nested, struct fit_result *r)
+{
+	const bool scans = run->options->lobes < 2;
+	struct memory *fresh = calloc(1, sizeof *fresh);
+	struct run own = *run;
+	struct fit_result simpler;
+	struct shape start[SEARCH_GIVEN];
+	struct found found;
+	long evaluations = 0;
+	enum status status = fresh ? STATUS_OK : STATUS_NO_MEMORY;
+	int count = 0;
+
+	if (fresh) {
+		own.options = simpler_options;
+		own.minima = fresh->minima;
+		own.isotropic = &fresh->nested;
+		status = fit_class(&own, class, simpler_options->anisotropic ? &fresh->anisotropic : &fresh->nested,
+				   &simpler);
+	}
+	free(fresh);
+	const double begin = search_clock();
+
+	if (status == STATUS_OK && scans)
+		status = fit_alone(run, class, r);
+	if (status == STATUS_OK)
+		count = richer_starts(run, class, &simpler, nested, start, &evaluations, &status);
+	if (status == STATUS_OK) {
+		const struct shape known = scans ? shape_of(&r->model) : start[0];
+
+		status = search_from(&run->multiresolution, run->options, class, start, count, &known,
+				     scans ? r->error : INFINITY, &found);
+	}
+	if (status != STATUS_OK)
+		return status;
+	if (isfinite(found.linear.error)) {
+		struct fit_result from_it;
+
+		status = result_of(run, class, &found, &from_it);
+		if (status != STATUS_OK)
+			return status;
+		if (!scans || from_it.error < r->error)
+			*r = from_it;
+	}
+	take_simpler(run, r, &simpler);
+	r->evaluations += simpler.evaluations + evaluations;
+	r->passes += simpler.passes;
+	r->seconds = simpler.seconds + search_clock() - begin;
+	return STATUS_OK;
+}
+
 static enum status fit_anew(const struct run *run, const struct ndf_class *class, struct nested *nested,
 			    struct fit_result *r)
 {
 	const struct nesting nesting = nesting_of(run, class);
+	struct fit_options simpler = *run->options;
 
+	if (leave_out(&simpler))
+		return fit_richer(run, class, &simpler, nested, r);
 	if (ndf_is_tabulated(class))
 		return fit_free_form(run, nested, r);
 	if (run->options->anisotropic && isnan(run->options->sigma_y))
@@ -600,7 +759,8 @@ static enum status find_undetermined(const struct run *run, const struct ndf_cla
 
 	if (has_sparse_lambda(run, class))
 		options.gamma = m->ndf.gamma; /* the other values have been fitted */
-	if (!options.algorithm)
+	/* Of two lobes no scan has been made, over all the shapes of both. */
+	if (!options.algorithm && options.lobes < 2)
 		status = undetermined_find(&run->multiresolution, &options, class, &run->minima[index_of(class)], &best,
 					   r->error, settled, &found, &r->evaluations);
 	r->undetermined |= found;

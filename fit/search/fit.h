@@ -23,6 +23,9 @@ enum fit_bound {
 	BOUND_KS_B = 1 << 8,
 	BOUND_K = 1 << 9,
 	BOUND_ANGLE = 1 << 10,
+	BOUND_GRAZING = 1 << 11,
+	BOUND_SECOND_SIGMA = 1 << 12,
+	BOUND_SECOND_GAMMA = 1 << 13,
 };
 
 /* A parameter is undetermined when, at every value of its domain, with the other parameters refitted, E is at most

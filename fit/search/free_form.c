@@ -249,7 +249,7 @@ static enum status step_along(struct run *r, struct state *s, bool (*move)(struc
 /* Takes up to `rounds` rounds of steps. */
 static enum status follow(struct run *r, struct state *s, int rounds)
 {
-	const bool free_ior = r->options->fresnel != FRESNEL_NONE && isnan(r->options->ior);
+	const bool free_ior = fresnel_has_ior(r->options->fresnel) && isnan(r->options->ior);
 	enum status status = STATUS_OK;
 	double ior_step = 0.03, rim_step = 0.03;
 

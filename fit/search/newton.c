@@ -134,8 +134,8 @@ static enum status differences(struct newton *w, double tolerance)
 }
 
 /* The quadratic form in its principal directions; curvatures that are negative, or next to nothing, count as positive: what is
- * uphill of nothing but a saddle is left. */
-static void principal(const struct newton *w, double value[], double vector[][SPACE_DIMS])
+ * uphill of nothing but a saddle is left. Returns whether all were positive, so that the model has a least value. */
+static bool principal(const struct newton *w, double value[], double vector[][SPACE_DIMS])
 {
 	const size_t n = (size_t)w->space->dims;
 	double a[SPACE_DIMS * SPACE_DIMS], v[SPACE_DIMS * SPACE_DIMS], largest = 0;
@@ -148,23 +148,37 @@ static void principal(const struct newton *w, double value[], double vector[][SP
 		for (size_t j = 0; j < n; j++)
 			a[i * n + j] = w->second[i][j];
 	gsl_eigen_symmv(&form.matrix, &values.vector, &vectors.matrix, &work);
+	bool convex = true;
+
 	for (size_t i = 0; i < n; i++)
 		largest = fmax(largest, fabs(value[i]));
 	for (size_t i = 0; i < n; i++) {
+		convex = convex && value[i] > 0;
 		value[i] = fmax(fabs(value[i]), fmax(1e-6 * largest, 1e-12));
 		for (size_t j = 0; j < n; j++)
 			vector[i][j] = v[j * n + i];
 	}
+	return convex;
 }
 
-/* The least of the quadratic model in the box: *step, and what it promises. */
-static double model_step(const struct newton *w, double step[])
+static double largest_of(const double step[], int n)
+{
+	double largest = 0;
+
+	for (int d = 0; d < n; d++)
+		largest = fmax(largest, fabs(step[d]));
+	return largest;
+}
+
+/* The least of the quadratic model in the box: *step, and what it promises. *free: the model is convex there, and the trust region
+ * does not hold the step back, so that it promises all there is. */
+static double model_step(const struct newton *w, double step[], bool *free)
 {
 	const int n = w->space->dims;
 	double value[SPACE_DIMS], vector[SPACE_DIMS][SPACE_DIMS], gain = 0;
 	struct least_distance p = {.dims = n};
 
-	principal(w, value, vector);
+	*free = principal(w, value, vector);
 	for (int k = 0; k < n; k++) {
 		double along = 0;
 
@@ -192,16 +206,8 @@ static double model_step(const struct newton *w, double step[])
 	}
 	for (int k = 0; k < n; k++)
 		gain -= 0.5 * p.z[k] * p.z[k];
+	*free = *free && largest_of(step, n) < 0.99 * w->radius;
 	return gain;
-}
-
-static double largest_of(const double step[], int n)
-{
-	double largest = 0;
-
-	for (int d = 0; d < n; d++)
-		largest = fmax(largest, fabs(step[d]));
-	return largest;
 }
 
 /* How well kd and ks are solved for where a step promises `gain`, relative to E: what they miss is to matter less than the step. */
@@ -210,12 +216,12 @@ static double inner_tolerance(const struct newton *w, double gain)
 	return fmax(0.1 * w->settings->tolerance, fmin(0.03 * gain, 1e-4));
 }
 
-static enum status iterate(struct newton *w, double *gain)
+static enum status iterate(struct newton *w, double *gain, bool *free)
 {
 	const int n = w->space->dims;
 	double step[SPACE_DIMS];
 
-	*gain = model_step(w, step);
+	*gain = model_step(w, step, free);
 	if (!(*gain > w->settings->tolerance * w->best.error))
 		return STATUS_OK;
 	struct place at = {.point = w->best};
@@ -278,11 +284,13 @@ static enum status descend(struct newton *w, const struct space_point *start, bo
 	while (status == STATUS_OK && w->evaluations < w->settings->evaluations && w->radius > SHORTEST &&
 	       !fit_cancelled(w->objective->options)) {
 		double gain;
+		bool free;
 
-		status = iterate(w, &gain);
-		*converged = !(gain > w->settings->tolerance * w->best.error);
-		if (*converged)
+		status = iterate(w, &gain, &free);
+		if (!(gain > w->settings->tolerance * w->best.error)) {
+			*converged = free;
 			break;
+		}
 	}
 	return status;
 }

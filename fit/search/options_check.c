@@ -114,6 +114,32 @@ static bool keeps_anisotropic_rule(const struct fit_options *o, struct error *er
 	return !fault;
 }
 
+/* Whether a model of more terms than two can be fitted. */
+static bool keeps_richer_rule(const struct fit_options *o, struct error *error)
+{
+	const bool f82 = o->fresnel == FRESNEL_F82, richer = f82 || o->grazing || o->lobes > 1;
+	const char *fault = NULL;
+
+	if (!richer)
+		return true;
+	if (o->grazing && !o->diffuse)
+		fault = "a burley term needs a diffuse one";
+	else if (term_list_of(o).n == 0)
+		fault = "too many terms: a second lobe goes without f82";
+	else if (o->algorithm)
+		fault = "f82, a second lobe and a burley term need the default algorithm";
+	else if (o->lobes > 1 && (o->anisotropic || !o->specular || !isnan(o->sigma) || !isnan(o->gamma)))
+		fault = "two lobes need a specular term, isotropic, with free sigma and gamma";
+	else if (o->lobes > 1 && o->lambda != LAMBDA_EXACT)
+		fault = "two lobes need the exact form of Lambda";
+	for (int n = 0; n < o->n_ndf && !fault; n++)
+		if (ndf_is_tabulated(o->ndf[n]))
+			fault = "pl goes with a diffuse term and one lobe only";
+	if (fault)
+		error_set(error, STATUS_DOMAIN, "%s", fault);
+	return !fault;
+}
+
 enum fit_rule fit_options_rule(const struct fit_options *o, struct error *error)
 {
 	if (check_ranges(o, error) != STATUS_OK)
@@ -128,6 +154,8 @@ enum fit_rule fit_options_rule(const struct fit_options *o, struct error *error)
 	}
 	if (!keeps_anisotropic_rule(o, error))
 		return FIT_RULE_ANISOTROPIC;
+	if (!keeps_richer_rule(o, error))
+		return FIT_RULE_RICHER;
 	for (int n = 0; n < o->n_ndf; n++) {
 		if (ndf_is_tabulated(o->ndf[n]) && (!o->specular || o->algorithm)) {
 			error_set(error, STATUS_DOMAIN, "%s needs a specular term and the default algorithm",

@@ -13,6 +13,12 @@ static double *parameter(struct shape *shape, enum coordinate c)
 		return &shape->ior;
 	case COORDINATE_K:
 		return &shape->k;
+	case COORDINATE_GRAZING:
+		return &shape->grazing;
+	case COORDINATE_SECOND_SIGMA:
+		return &shape->second_sigma;
+	case COORDINATE_SECOND_GAMMA:
+		return &shape->second_gamma;
 	case COORDINATE_ANGLE:
 		return &shape->angle;
 	default:
@@ -24,8 +30,11 @@ static double to_coordinate(enum coordinate c, double least_gamma, double value)
 {
 	switch (c) {
 	case COORDINATE_SIGMA:
+	case COORDINATE_SECOND_SIGMA:
+	case COORDINATE_GRAZING:
 		return log(value);
 	case COORDINATE_GAMMA:
+	case COORDINATE_SECOND_GAMMA:
 		return log(value - least_gamma);
 	case COORDINATE_IOR:
 		return (value - 1) / (value + 1);
@@ -40,8 +49,11 @@ static double from_coordinate(enum coordinate c, double least_gamma, double x)
 {
 	switch (c) {
 	case COORDINATE_SIGMA:
+	case COORDINATE_SECOND_SIGMA:
+	case COORDINATE_GRAZING:
 		return exp(x);
 	case COORDINATE_GAMMA:
+	case COORDINATE_SECOND_GAMMA:
 		return least_gamma + exp(x);
 	case COORDINATE_IOR:
 		return (1 + x) / (1 - x);
@@ -65,6 +77,9 @@ static const struct axis scan_ior = {{1.03, 1.15, 1.35, 1.8, 3, 8, 60}, 7};
 static const struct axis scan_k = {{0, 0.5, 2, 6, 30}, 5};
 /* The scan is of isotropic shapes, unless the roughnesses are fixed. */
 static const struct axis scan_stretch = {{0}, 1};
+/* Of the grazing term and the second lobe there is no scan: fit.c knows where to begin. */
+static const struct axis scan_grazing = {{5}, 1};
+static const struct axis scan_second = {{0.3}, 1}, scan_second_gamma = {{3}, 1};
 static const struct axis scan_angle = {{-75, -60, -45, -30, -15, 0, 15, 30, 45, 60, 75, 90}, 12};
 
 static struct axis gamma_axis(double least, double low, bool student_t)
@@ -108,12 +123,33 @@ static void add_axes(struct space *s, const struct fit_options *o)
 	}
 }
 
+static void add_grazing(struct space *s, const struct fit_options *o)
+{
+	if (o->grazing && isnan(o->grazing_exponent))
+		add_dim(s, COORDINATE_GRAZING, FIT_GRAZING_MIN, FIT_GRAZING_MAX, &scan_grazing);
+}
+
+static void add_second(struct space *s, const struct ndf_class *class)
+{
+	add_dim(s, COORDINATE_SECOND_SIGMA, FIT_SIGMA_MIN, FIT_SIGMA_MAX, &scan_second);
+	if (!ndf_has_gamma(class))
+		return;
+	const struct ndf_param *gamma = ndf_param_at(class, 1);
+
+	if (s->least_gamma == 0)
+		s->least_gamma = gamma->min;
+	add_dim(s, COORDINATE_SECOND_GAMMA, gamma->search_min, gamma->search_max, &scan_second_gamma);
+}
+
 void space_init(struct space *s, const struct fit_options *o, const struct ndf_class *class)
 {
-	*s = (struct space){.fixed = {.sigma = o->sigma, .gamma = o->gamma, .ior = o->ior}};
+	const double exponent = isnan(o->grazing_exponent) ? scan_grazing.value[0] : o->grazing_exponent;
+
+	*s = (struct space){.fixed = {.sigma = o->sigma, .gamma = o->gamma, .ior = o->ior, .grazing = exponent}};
 	if (!o->specular) {
 		/* Any valid shape will do: ks is 0. */
-		s->fixed = (struct shape){.sigma = 1, .gamma = 2, .ior = 1.5};
+		s->fixed = (struct shape){.sigma = 1, .gamma = 2, .ior = 1.5, .grazing = exponent};
+		add_grazing(s, o);
 		return;
 	}
 	if (isnan(o->sigma) && ndf_has_gamma(class) && ndf_has_lambda_forms(class))
@@ -130,12 +166,15 @@ void space_init(struct space *s, const struct fit_options *o, const struct ndf_c
 
 		add_dim(s, COORDINATE_GAMMA, gamma->search_min, gamma->search_max, &axis);
 	}
-	if (o->fresnel != FRESNEL_NONE && isnan(o->ior))
+	if (fresnel_has_ior(o->fresnel) && isnan(o->ior))
 		add_dim(s, COORDINATE_IOR, FIT_IOR_MIN, FIT_IOR_MAX, &scan_ior);
 	if (o->fresnel == FRESNEL_CONDUCTOR)
 		add_dim(s, COORDINATE_K, 0, FIT_K_MAX, &scan_k);
 	if (o->anisotropic)
 		add_axes(s, o);
+	add_grazing(s, o);
+	if (o->lobes > 1)
+		add_second(s, class);
 }
 
 double space_sigma_scale(const struct space *s, double gamma)

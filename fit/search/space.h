@@ -6,13 +6,16 @@
 
 #include "fit/error/objective.h"
 
-enum { SPACE_DIMS = 6, SPACE_VALUES = 34, SPACE_SECOND = SPACE_DIMS * (SPACE_DIMS + 1) / 2 };
+enum { SPACE_DIMS = 8, SPACE_VALUES = 34, SPACE_SECOND = SPACE_DIMS * (SPACE_DIMS + 1) / 2 };
 
 enum coordinate {
-	COORDINATE_SIGMA, /* ln sigma, of STD's sigma for the distributions that are STD with another sigma */
-	COORDINATE_GAMMA, /* ln(gamma - the least gamma of the NDF) */
-	COORDINATE_IOR,   /* sqrt(F0) = (n - 1)/(n + 1) */
-	COORDINATE_K,     /* k/(k + 1) */
+	COORDINATE_SIGMA,        /* ln sigma, of STD's sigma for the distributions that are STD with another sigma */
+	COORDINATE_GAMMA,        /* ln(gamma - the least gamma of the NDF) */
+	COORDINATE_IOR,          /* sqrt(F0) = (n - 1)/(n + 1) */
+	COORDINATE_K,            /* k/(k + 1) */
+	COORDINATE_GRAZING,      /* ln of the grazing term's exponent */
+	COORDINATE_SECOND_SIGMA, /* as sigma and gamma, */
+	COORDINATE_SECOND_GAMMA, /* of the second lobe */
 	/* Of the axes: with l = ln(sigma_x/sigma_y) and the angle a */
 	COORDINATE_STRETCH_COS, /* l cos 2a, */
 	COORDINATE_STRETCH_SIN, /* l sin 2a: isotropy is a point like others, and no angle the end of a range */

@@ -310,7 +310,10 @@ static unsigned bit_of(enum coordinate c)
 				       [COORDINATE_GAMMA] = BOUND_GAMMA,
 				       [COORDINATE_IOR] = BOUND_IOR,
 				       [COORDINATE_K] = BOUND_K,
-				       [COORDINATE_ANGLE] = BOUND_ANGLE};
+				       [COORDINATE_ANGLE] = BOUND_ANGLE,
+				       [COORDINATE_GRAZING] = BOUND_GRAZING,
+				       [COORDINATE_SECOND_SIGMA] = BOUND_SECOND_SIGMA,
+				       [COORDINATE_SECOND_GAMMA] = BOUND_SECOND_GAMMA};
 
 	return bit[c];
 }
@@ -417,6 +420,8 @@ static enum status ask(struct refit_context *q, int n, unsigned determined, bool
 
 	const bool shared = options->gray || (specular && options->gray_specular);
 
+	if (specular && options->fresnel == FRESNEL_F82)
+		return STATUS_OK; /* F0 is one of three: nothing is known of it alone */
 	if ((shared && channel > 0) || !(specular ? options->specular : options->diffuse))
 		return STATUS_OK;
 	status = factor(q, channel, specular, &undetermined);
@@ -427,7 +432,7 @@ static enum status ask(struct refit_context *q, int n, unsigned determined, bool
 /* Where D is free there is no shape to be refitted. */
 static enum status find_of_table(struct refit_context *q, unsigned *undetermined)
 {
-	const bool free_ior = q->options->fresnel != FRESNEL_NONE && isnan(q->options->ior);
+	const bool free_ior = fresnel_has_ior(q->options->fresnel) && isnan(q->options->ior);
 	bool any = false;
 
 	q->class = ndf_find("ggx");

@@ -8,6 +8,8 @@
 
 int distribution_source_check(const struct options *options)
 {
+	if (options_given(options, "phi-i") && isnan(options->theta_i))
+		return options_usage(options->command, "--phi-i means nothing without --theta-i");
 	if (!options->from && options->n_paths != 1)
 		return options_usage(options->command, "expected one NAME, or --from, found %d", options->n_paths);
 	/* Its weight has masking alone, of wo. */

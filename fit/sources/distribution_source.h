@@ -22,7 +22,8 @@ struct distribution_source {
 	struct model_source models;
 };
 
-/* distribution_source_check - whether the options go together. Returns -1, or EXIT_USAGE with a message on standard error. */
+/* distribution_source_check - whether the options go together. Returns -1, or EXIT_USAGE with a message on standard
+ * error. */
 MUST_CHECK int distribution_source_check(const struct options *options);
 
 /* distribution_source_read - the distributions that the options ask for. Errors: STATUS_DOMAIN (the words describe

@@ -14,6 +14,7 @@ const struct csv_column distribution_columns[DISTRIBUTION_COLUMNS] = {
 	[DISTRIBUTION_THETA] = {"theta", true},
 	[DISTRIBUTION_PHI] = {"phi", true},
 	[DISTRIBUTION_THETA_I] = {"theta_i", true},
+	[DISTRIBUTION_PHI_I] = {"phi_i", true},
 	[DISTRIBUTION_D] = {"D", true},
 	[DISTRIBUTION_P22] = {"P22", true},
 	[DISTRIBUTION_P2] = {"P2", true},
@@ -22,6 +23,14 @@ const struct csv_column distribution_columns[DISTRIBUTION_COLUMNS] = {
 	[DISTRIBUTION_PDF] = {"pdf", true},
 	[DISTRIBUTION_VISIBLE_PDF] = {"visible_pdf", true},
 	[DISTRIBUTION_WEIGHT] = {"visible_weight", true},
+	[DISTRIBUTION_CDF] = {"cdf", true},
+	[DISTRIBUTION_CDF_PHI] = {"cdf_phi", true},
+	[DISTRIBUTION_CDF_THETA] = {"cdf_theta", true},
+	[DISTRIBUTION_VISIBLE_CDF] = {"visible_cdf", true},
+	[DISTRIBUTION_ACROSS_CDF] = {"across_cdf", true},
+	[DISTRIBUTION_MOMENT_2] = {"moment_2", true},
+	[DISTRIBUTION_MOMENT_4] = {"moment_4", true},
+	[DISTRIBUTION_KURTOSIS] = {"kurtosis", true},
 };
 
 const struct csv_column distribution_given_columns[DISTRIBUTION_GIVEN] = {
@@ -29,12 +38,12 @@ const struct csv_column distribution_given_columns[DISTRIBUTION_GIVEN] = {
 	[DISTRIBUTION_SIGMA_Y] = {"sigma_y", false}, [DISTRIBUTION_GAMMA] = {"gamma", false},
 	[DISTRIBUTION_PARAMS] = {"params", false},   [DISTRIBUTION_LAMBDA_FORM] = {"lambda", false},
 	[DISTRIBUTION_THETA] = {"theta", false},     [DISTRIBUTION_PHI] = {"phi", false},
-	[DISTRIBUTION_THETA_I] = {"theta_i", false},
+	[DISTRIBUTION_THETA_I] = {"theta_i", false}, [DISTRIBUTION_PHI_I] = {"phi_i", false},
 };
 
 /* Where a distribution is evaluated, degrees. */
 struct directions {
-	double theta, phi, theta_i; /* theta_i NaN: no light */
+	double theta, phi, theta_i, phi_i; /* theta_i NaN: no light */
 };
 
 /* A line of output: the cells of the description, then numbers. */
@@ -52,19 +61,29 @@ static void evaluate(struct line *line, const struct distribution *distribution,
 		     struct directions directions)
 {
 	const struct vec3 m = vec3_from_spherical_deg(directions.theta, directions.phi);
-	const double slope = hypot(m.x, m.y) / m.z;
+	const struct vec3 wi = distribution_direction(directions.theta_i, directions.phi_i);
+	const double slope = hypot(m.x, m.y) / m.z, azimuth = directions.phi * M_PI / 180;
+	const struct distribution_cdf cdf = distribution_cdf(distribution, wi, directions.theta, directions.phi);
 	set(line, DISTRIBUTION_THETA, directions.theta);
 	set(line, DISTRIBUTION_PHI, directions.phi);
 	set(line, DISTRIBUTION_THETA_I, directions.theta_i);
 	set(line, DISTRIBUTION_D, distribution_D(distribution, m));
 	set(line, DISTRIBUTION_P22, m.z > 0 ? distribution_P22(distribution, -m.x / m.z, -m.y / m.z) : NAN);
-	set(line, DISTRIBUTION_P2, m.z > 0 ? distribution_P2(distribution, directions.phi * M_PI / 180, slope) : NAN);
+	set(line, DISTRIBUTION_P2, m.z > 0 ? distribution_P2(distribution, azimuth, slope) : NAN);
 	set(line, DISTRIBUTION_LAMBDA, distribution_lambda(distribution, m));
 	set(line, DISTRIBUTION_G1, distribution_G1(distribution, m));
 	set(line, DISTRIBUTION_PDF, distribution_D(distribution, m) * m.z);
+	set(line, DISTRIBUTION_CDF, cdf.joint);
+	set(line, DISTRIBUTION_CDF_PHI, cdf.phi);
+	set(line, DISTRIBUTION_CDF_THETA, cdf.theta);
+	set(line, DISTRIBUTION_MOMENT_2, distribution_moment(distribution, azimuth, 2));
+	set(line, DISTRIBUTION_MOMENT_4, distribution_moment(distribution, azimuth, 4));
+	set(line, DISTRIBUTION_KURTOSIS, distribution_kurtosis(distribution));
 	if (isnan(directions.theta_i))
 		return;
-	const struct vec3 wi = vec3_from_spherical_deg(directions.theta_i, 0);
+	set(line, DISTRIBUTION_PHI_I, directions.phi_i);
+	set(line, DISTRIBUTION_VISIBLE_CDF, cdf.along);
+	set(line, DISTRIBUTION_ACROSS_CDF, cdf.across);
 	const double pdf = distribution_visible_pdf(distribution, wi, m);
 	set(line, DISTRIBUTION_VISIBLE_PDF, pdf);
 	set(line, DISTRIBUTION_WEIGHT, pdf > 0 ? distribution_weight(distribution, gaf, wi, m, pdf) : 0);
@@ -109,7 +128,7 @@ enum status distribution_table_tabulate(struct csv_table *table, const struct op
 	for (size_t i = 0; status == STATUS_OK && i < theta.n; i++)
 		for (size_t j = 0; status == STATUS_OK && j < phi.n; j++) {
 			evaluate(&line, &item->distribution, item->gaf,
-				 (struct directions){theta.deg[i], phi.deg[j], options->theta_i});
+				 (struct directions){theta.deg[i], phi.deg[j], options->theta_i, options->phi_i});
 			status = *options->cancel ? STATUS_INTERRUPTED : add(table, &line, error);
 		}
 	angles_free(&theta);
@@ -124,9 +143,12 @@ static enum status row_directions(const struct options *options, char *const *ro
 	static const struct {
 		enum distribution_column column;
 		double min, max;
-	} angle[] = {{DISTRIBUTION_THETA, 0, 90}, {DISTRIBUTION_PHI, -360, 360}, {DISTRIBUTION_THETA_I, 0, 89.999999}};
-	double value[3] = {NAN, 0, options->theta_i};
-	for (int i = 0; i < 3; i++) {
+	} angle[] = {{DISTRIBUTION_THETA, 0, 90},
+		     {DISTRIBUTION_PHI, -360, 360},
+		     {DISTRIBUTION_THETA_I, 0, 90},
+		     {DISTRIBUTION_PHI_I, -360, 360}};
+	double value[4] = {NAN, 0, options->theta_i, options->phi_i};
+	for (int i = 0; i < 4; i++) {
 		double x;
 		if (!csv_parse_number(row[angle[i].column], &x) || x < angle[i].min || x > angle[i].max)
 			return error_set(error, STATUS_DOMAIN, "bad %s: expected degrees from %g to %g",
@@ -134,7 +156,7 @@ static enum status row_directions(const struct options *options, char *const *ro
 		if (!isnan(x))
 			value[i] = x;
 	}
-	*directions = (struct directions){value[0], value[1], value[2]};
+	*directions = (struct directions){value[0], value[1], value[2], value[3]};
 	return isnan(value[0]) ? error_set(error, STATUS_DOMAIN, "theta is empty") : STATUS_OK;
 }
 

@@ -25,11 +25,12 @@ struct error_grid {
 
 /* error_grid_make - STATUS_NO_MEMORY; the materials have to outlive the grid. NDFs beyond FIT_NDFS_MAX are left out. */
 MUST_CHECK enum status error_grid_make(const struct materials *materials, struct error_grid *grid);
-/* error_grid_label - what a column is of: "std", or "std, solid-angle" where there are several weights. Returns label. */
+/* error_grid_label - what a column is of: "std", or "std, solid-angle" where there are several weights. Returns
+ * label. */
 enum { ERROR_GRID_LABEL = 64 };
 const char *error_grid_label(const struct error_grid *grid, int column, char label[ERROR_GRID_LABEL]);
-/* error_grid_sort - puts the materials in order of STD's error or, where one has no STD, of their lowest; those without a
- * fit come last. */
+/* error_grid_sort - puts the materials in order of STD's error or, where one has no STD, of their lowest; those without
+ * a fit come last. */
 void error_grid_sort(struct error_grid *grid);
 void error_grid_free(struct error_grid *grid);
 

@@ -26,10 +26,14 @@ static const char *first_given(const struct options *options, const char *const 
 }
 
 /* Options that control a fit and do not describe a model. */
-static const char *const of_a_fit[] = {"unbounded", "no-diffuse", "no-specular", "gray", "anisotropic", NULL};
+static const char *const of_a_fit[] = {"unbounded",   "no-diffuse", "no-specular", "gray",
+				       "anisotropic", "diffuse",    "lobes",       NULL};
+/* Options that a fit has no use for: what they say is what it finds. */
+static const char *const of_a_given_model[] = {"k", "f0", "f82", "f90", "kg", "ks2", "sigma2", "gamma2", NULL};
 /* Options that a row determines. */
-static const char *const of_a_model[] = {"kd",  "ks",     "sigma", "angle",   "gamma",     "ior", "k",
-					 "gaf", "lambda", "bins",  "fresnel", "max-theta", NULL};
+static const char *const of_a_model[] = {"kd",  "ks",     "sigma",    "angle",   "gamma",     "ior",    "k",
+					 "gaf", "lambda", "bins",     "fresnel", "max-theta", "f0",     "f82",
+					 "f90", "kg",     "exponent", "ks2",     "sigma2",    "gamma2", NULL};
 
 /* An export fits a model in the place of another: the weight is of that fit. Elsewhere it chooses rows. */
 static bool weighs_substitute(const struct options *options)
@@ -81,8 +85,10 @@ int model_source_check(const struct options *options, bool may_fit)
 		return check_rows(options);
 	if (kind == SOURCE_GIVEN || !may_fit)
 		return check_given(options);
-	if (options_given(options, "k"))
-		return options_usage(options->command, "--k means nothing without --ks");
+	const char *given = first_given(options, of_a_given_model);
+	if (given)
+		return options_usage(options->command, "--%s means nothing without --%s", given,
+				     strcmp(given, "kg") ? "ks" : "kd");
 	return options_check_fit(options);
 }
 

@@ -40,14 +40,14 @@ enum source_kind model_source_kind(const struct options *options);
  * none. Returns -1, or EXIT_USAGE with a message on standard error. */
 MUST_CHECK int model_source_check(const struct options *options, bool may_fit);
 
-/* model_source_check_rows - whether the table of --from can be read and has no rows of one fit that contradict each other;
- * with --row they may. STATUS_OK where there is no table. Errors: STATUS_IO, STATUS_FORMAT, STATUS_NO_MEMORY. */
+/* model_source_check_rows - whether the table of --from can be read and has no rows of one fit that contradict each
+ * other; with --row they may. STATUS_OK where there is no table. Errors: STATUS_IO, STATUS_FORMAT, STATUS_NO_MEMORY. */
 MUST_CHECK enum status model_source_check_rows(const struct options *options, struct error *error);
 
 /* model_source_read - the models that the options, checked, ask for, in the order of the table or of --ndf.
  * path: the MERL file that they are of; NULL: none, where any material's row is wanted or the parameters are given.
- * Errors: STATUS_IO, STATUS_FORMAT (as model_source_check_rows(), too), STATUS_NO_DATA (no such row; nothing to fit to), STATUS_NO_MEMORY, with the file in
- * the text; STATUS_INTERRUPTED. *source holds nothing then. */
+ * Errors: STATUS_IO, STATUS_FORMAT (as model_source_check_rows(), too), STATUS_NO_DATA (no such row; nothing to fit
+ * to), STATUS_NO_MEMORY, with the file in the text; STATUS_INTERRUPTED. *source holds nothing then. */
 MUST_CHECK enum status model_source_read(const struct options *options, const char *path, struct model_source *source,
 					 struct error *error);
 

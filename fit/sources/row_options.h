@@ -3,9 +3,9 @@
 #ifndef ROW_OPTIONS_H
 #define ROW_OPTIONS_H
 
-/* row_options - newly allocated: "--ndf std --gaf uncorrelated --fresnel dielectric --lambda exact --sigma ... --kd R,G,B
- * --ks R,G,B", which eval, export, render and synth take. NULL: out of memory, or a row that no options describe: a failed one,
- * one without a lobe, an anisotropic one, or one of another NDF than std, ggx and beckmann. */
+/* row_options - newly allocated: "--ndf std --gaf uncorrelated --fresnel dielectric --lambda exact --sigma ... --kd
+ * R,G,B --ks R,G,B", which eval, export, render and synth take. NULL: out of memory, or a row that no options describe:
+ * a failed one, one without a lobe, an anisotropic one, or one of another NDF than std, ggx and beckmann. */
 char *row_options(char *const *row);
 
 #endif
