@@ -33,12 +33,12 @@ static void check_gradient(const struct measurement *measurement, const struct f
 	objective_eval(&objective, &shape, 1e-9, true, &linear);
 	assert_int_equal(gradient_changes(&gradient, &linear, near, change), STATUS_OK);
 	/* The same bits from two threads. */
-	objective.threads = 2;
+	objective.threads++;
 #pragma omp parallel num_threads(2)
 #pragma omp single
 	assert_int_equal(gradient_changes(&gradient, &linear, near, at_one), STATUS_OK);
 	assert_memory_equal(change, at_one, sizeof change);
-	objective.threads = 1;
+	objective.threads--;
 	for (int i = 0; i < PARAMETERS; i++) {
 		struct shape below = shape, above = shape;
 		const double h = 0.01 * *parameter(&below, i);

@@ -9,8 +9,9 @@ enum status gradient_init(struct gradient *g, struct objective *o, int n, enum m
 
 	*g = (struct gradient){.objective = o};
 	g->sums = malloc((size_t)o->table->n_blocks * sizeof *g->sums);
-	if (!g->sums)
-		return STATUS_NO_MEMORY;
+	g->probe = malloc((size_t)n * sizeof *g->probe);
+	if (!g->sums || !g->probe)
+		status = STATUS_NO_MEMORY;
 	for (; g->n < n && status == STATUS_OK; g->n += status == STATUS_OK)
 		status = objective_init(&g->probe[g->n], o->table, o->options, o->class, 1, density);
 	if (status != STATUS_OK)
@@ -22,6 +23,7 @@ void gradient_free(struct gradient *g)
 {
 	for (int i = 0; i < g->n; i++)
 		objective_free(&g->probe[i]);
+	free(g->probe);
 	free(g->sums);
 	*g = (struct gradient){.objective = NULL};
 }

@@ -14,8 +14,8 @@ enum { GRADIENT_STEPS = 8 };
 struct gradient {
 	struct objective *objective;
 	int n;
-	struct objective probe[GRADIENT_STEPS]; /* each has the tables of a shape a step away */
-	double (*sums)[GRADIENT_STEPS];         /* one set a block */
+	struct objective *probe;        /* each has the tables of a shape a step away */
+	double (*sums)[GRADIENT_STEPS]; /* one set a block */
 };
 
 /* gradient_init - for the gradients of an objective by n <= GRADIENT_STEPS parameters; *objective is borrowed. STATUS_NO_MEMORY. */

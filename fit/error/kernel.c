@@ -316,7 +316,8 @@ static void pass(int terms, int members, const float *m, const float *const term
 }
 
 __attribute__((always_inline)) static inline void
-signs_of(int terms, int members, const float *m, const float *const term[], const double x[], float *const weight[])
+signs_of(int terms, int members, const float *m, const float *const term[], const double x[],
+	 float *const weight[]) /* cppcheck-suppress constParameter; it is written through */
 {
 	const lanes zero = {0};
 

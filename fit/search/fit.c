@@ -239,7 +239,7 @@ struct nested {
 	struct fit_result result[NESTED], of_class[FIT_NDFS_MAX];
 };
 
-/* What a run remembers of its searches: 600 kB, too much for the stack of a thread. */
+/* What a run remembers of its searches: megabytes, too much for the stack of a thread. */
 struct memory {
 	struct nested nested, anisotropic;
 	struct scan_minima minima[FIT_NDFS_MAX];
@@ -249,14 +249,13 @@ static enum status fit_alone(const struct run *run, const struct ndf_class *clas
 {
 	const double begin = search_clock();
 	struct found found;
-	enum status status = run->options->algorithm ? algorithm_run(&run->multiresolution.table[SEARCH_LEVELS - 1],
-								     run->options, class, &found)
-						     : search_run(&run->multiresolution, run->options, class, &found);
+	enum status status =
+		run->options->algorithm
+			? algorithm_run(&run->multiresolution.table[SEARCH_LEVELS - 1], run->options, class, &found)
+			: search_run(&run->multiresolution, run->options, class, &run->minima[index_of(class)], &found);
 
 	if (status == STATUS_OK)
 		status = result_of(run, class, &found, r);
-	if (status == STATUS_OK && !run->options->algorithm)
-		run->minima[index_of(class)] = found.minima;
 	r->seconds = search_clock() - begin;
 	return status;
 }
@@ -405,16 +404,18 @@ static enum status fit_each_gamma(const struct run *run, const struct ndf_class 
 	struct fit_options options = *run->options;
 	struct run own = *run;
 	enum status status = STATUS_OK;
-	struct scan_minima *minima = &run->minima[index_of(class)], best_minima = *minima;
+	struct scan_minima *minima = &run->minima[index_of(class)], *best_minima = malloc(sizeof *best_minima);
 	struct fit_result one = {0};
 	struct ndf ndf;
 	struct further sum = {.options = run->options};
 	long passes = 0;
 	double worst = 0;
 
+	*r = (struct fit_result){.error = INFINITY};
+	if (!best_minima)
+		return STATUS_NO_MEMORY;
 	own.options = &options;
 	trace_further(&options, &sum);
-	*r = (struct fit_result){.error = INFINITY};
 	for (options.gamma = 1.5; options.gamma <= 16 && status == STATUS_OK; options.gamma += 0.5) {
 		const struct shape shape = {.sigma = 1, .gamma = options.gamma};
 
@@ -426,11 +427,13 @@ static enum status fit_each_gamma(const struct run *run, const struct ndf_class 
 		sum.seconds += one.seconds;
 		if (status == STATUS_OK && one.error < r->error) {
 			*r = one;
-			best_minima = *minima;
+			*best_minima = *minima;
 		}
 		worst = fmax(worst, one.error);
 	}
-	*minima = best_minima;
+	if (r->error < INFINITY)
+		*minima = *best_minima;
+	free(best_minima);
 	if (worst <= undetermined_limit(r->error))
 		r->undetermined = BOUND_GAMMA;
 	r->evaluations = sum.evaluations;

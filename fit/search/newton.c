@@ -16,6 +16,7 @@ struct newton {
 	struct gradient gradient;
 	double slope[SPACE_DIMS], second[SPACE_DIMS][SPACE_DIMS]; /* of E at the best point */
 	struct space_point best;
+	gsl_eigen_symmv_workspace *work;
 	double tolerance; /* to which kd and ks are known there */
 	double radius;
 	int evaluations;
@@ -103,7 +104,7 @@ static enum status differences(struct newton *w, double tolerance)
 {
 	const int n = w->space->dims;
 	const struct place start = {.point = w->best, .tolerance = w->tolerance};
-	double from[SPACE_DIMS], raw[SPACE_DIMS][SPACE_DIMS];
+	double from[SPACE_DIMS], raw[SPACE_DIMS][SPACE_DIMS] = {{0}};
 	struct place better = start;
 	enum status status = STATUS_OK;
 
@@ -141,15 +142,12 @@ static bool principal(const struct newton *w, double value[], double vector[][SP
 	double a[SPACE_DIMS * SPACE_DIMS], v[SPACE_DIMS * SPACE_DIMS], largest = 0;
 	gsl_matrix_view form = gsl_matrix_view_array(a, n, n), vectors = gsl_matrix_view_array(v, n, n);
 	gsl_vector_view values = gsl_vector_view_array(value, n);
-	double diagonal[SPACE_DIMS], sub[SPACE_DIMS], cosines[SPACE_DIMS], sines[SPACE_DIMS];
-	gsl_eigen_symmv_workspace work = {.size = n, .d = diagonal, .sd = sub, .gc = cosines, .gs = sines};
+	bool convex = true;
 
 	for (size_t i = 0; i < n; i++)
 		for (size_t j = 0; j < n; j++)
-			a[i * n + j] = w->second[i][j];
-	gsl_eigen_symmv(&form.matrix, &values.vector, &vectors.matrix, &work);
-	bool convex = true;
-
+			gsl_matrix_set(&form.matrix, i, j, w->second[i][j]);
+	gsl_eigen_symmv(&form.matrix, &values.vector, &vectors.matrix, w->work);
 	for (size_t i = 0; i < n; i++)
 		largest = fmax(largest, fabs(value[i]));
 	for (size_t i = 0; i < n; i++) {
@@ -219,7 +217,7 @@ static double inner_tolerance(const struct newton *w, double gain)
 static enum status iterate(struct newton *w, double *gain, bool *free)
 {
 	const int n = w->space->dims;
-	double step[SPACE_DIMS];
+	double step[SPACE_DIMS] = {0};
 
 	*gain = model_step(w, step, free);
 	if (!(*gain > w->settings->tolerance * w->best.error))
@@ -309,10 +307,16 @@ enum status newton_descend(const struct space *space, struct objective *o, const
 	*converged = false;
 	if (status != STATUS_OK)
 		return status;
-	objective_begin(o, &point->linear);
-	status = descend(&w, point, converged);
+	w.work = gsl_eigen_symmv_alloc((size_t)space->dims);
+	if (w.work) {
+		objective_begin(o, &point->linear);
+		status = descend(&w, point, converged);
+		gsl_eigen_symmv_free(w.work);
+		*point = w.best;
+		pack(&w, point);
+	} else {
+		status = STATUS_NO_MEMORY;
+	}
 	gradient_free(&w.gradient);
-	*point = w.best;
-	pack(&w, point);
 	return status;
 }

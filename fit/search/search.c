@@ -258,11 +258,11 @@ static int thin_out(const struct search *s, struct space_point *point, int count
 static enum status refine(struct search *s, int level, struct objective *o, struct space_point *point, bool *limited)
 {
 	const struct stage *stage = &stages[level];
-	enum status status = STATUS_OK;
-	bool converged = false;
 
 	if (stage->by_gradient.evaluations > 0 && point->error > NOISE_FREE) {
-		status = newton_descend(&s->space, o, &stage->by_gradient, report, s, point, &converged);
+		bool converged = false;
+		const enum status status =
+			newton_descend(&s->space, o, &stage->by_gradient, report, s, point, &converged);
 		if (converged || level < SEARCH_LEVELS - 1 || status != STATUS_OK)
 			return status;
 	}
@@ -544,7 +544,7 @@ static enum status search_random(struct search *s, struct space_point point[], s
 }
 
 enum status search_run(const struct multiresolution *multiresolution, const struct fit_options *options,
-		       const struct ndf_class *class, struct found *found)
+		       const struct ndf_class *class, struct scan_minima *minima, struct found *found)
 {
 	struct search s = new_search(multiresolution, options, class);
 	struct space_point *point = calloc(FIRST_POINTS_MAX + (size_t)options->starts, sizeof *point);
@@ -553,7 +553,7 @@ enum status search_run(const struct multiresolution *multiresolution, const stru
 
 	*found = (struct found){.starts = 1, .starts_agreeing = s.space.dims == 0};
 	if (s.space.dims > 0 && status == STATUS_OK) {
-		count = first_points(&s, point, &found->minima, &status);
+		count = first_points(&s, point, minima, &status);
 		found->starts = count;
 		count = descend(&s, 0, point, count, found, &status);
 	}
@@ -570,19 +570,26 @@ enum status search_estimate(const struct multiresolution *multiresolution, const
 			    const struct ndf_class *class, double *error)
 {
 	struct search s = new_search(multiresolution, options, class);
-	struct space_point point[FIRST_POINTS_MAX] = {{.error = 0}};
+	struct space_point *point = calloc(FIRST_POINTS_MAX, sizeof *point);
+	struct scan_minima *minima = calloc(1, sizeof *minima);
 	struct found found = {.starts = 0};
-	enum status status = STATUS_OK;
-	int count = s.space.dims > 0 ? first_points(&s, point, &found.minima, &status) : 1;
+	enum status status = point && minima ? STATUS_OK : STATUS_NO_MEMORY;
+	int count = 1;
 
+	if (status == STATUS_OK && s.space.dims > 0)
+		count = first_points(&s, point, minima, &status);
 	for (int level = 0; level < 2 && status == STATUS_OK && s.space.dims > 0; level++) {
 		if (level > 0)
 			count = thin_out(&s, point, count, &stages[level]);
 		status = refine_all(&s, level, point, count, &found);
 	}
 	*error = INFINITY;
-	for (int n = 0; n < count && s.space.dims > 0; n++)
+	for (int n = 0; n < count && status == STATUS_OK && s.space.dims > 0; n++)
 		*error = fmin(*error, point[n].error);
+	free(minima);
+	free(point);
+	if (status != STATUS_OK)
+		return status;
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }
 
