@@ -253,17 +253,25 @@ static int thin_out(const struct search *s, struct space_point *point, int count
 	return kept;
 }
 
-/* Where the error is not next to nothing, so that it is smooth about its least, its gradient leads there; where that does not
- * end on the full table, and on the smallest sample, whose error is rugged, a search without gradients does. */
+/* Where E is smooth about its least, its gradient leads there: not where E is next to nothing, nor on a sample so small that
+ * the kink each entry makes shows. Where that does not end on the full table, a search without gradients follows. */
+static bool is_smooth(const struct objective *o, const struct space_point *point)
+{
+	const bool few = o->table->scattered && o->table->n_samples <= OBJECTIVE_EXACT_SAMPLES;
+
+	return point->error > NOISE_FREE && !few;
+}
+
 static enum status refine(struct search *s, int level, struct objective *o, struct space_point *point, bool *limited)
 {
 	const struct stage *stage = &stages[level];
 
-	if (stage->by_gradient.evaluations > 0 && point->error > NOISE_FREE) {
+	if (stage->by_gradient.evaluations > 0 && is_smooth(o, point)) {
 		bool converged = false;
 		const enum status status =
 			newton_descend(&s->space, o, &stage->by_gradient, report, s, point, &converged);
-		if (converged || level < SEARCH_LEVELS - 1 || status != STATUS_OK)
+
+		if (level < SEARCH_LEVELS - 1 || converged || status != STATUS_OK)
 			return status;
 	}
 	return local_descend(&s->space, o, &stage->settings, report, s, point, limited);
