@@ -206,9 +206,9 @@ check-docs: setup
 	@$(MAKE) --no-print-directory all library
 	@MERL='$(MERL)' scripts/check_docs.sh $(BUILD)/stdfit
 
-# What the browser test holds the page of a report against, beside its own eyes.
+# What the tests hold the page of a report and glTF exports against, beside their own eyes.
 page-tools:
-	npm install --no-audit --no-fund --prefix $(BUILD)/npm axe-core html-validate
+	npm install --no-audit --no-fund --prefix $(BUILD)/npm axe-core html-validate gltf-validator
 
 clean:
 	rm -rf $(BUILD)
