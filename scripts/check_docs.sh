@@ -291,13 +291,13 @@ check_names() {
 # Lines `COMMAND --OPTION`, of the program and of the first two columns of the tables in docs/commands.md.
 check_options() {
 	stdfit --help | sed -n 's/^  stdfit \[*\([a-z]*\)]* .*/\1/p' | while read -r command; do
-		stdfit "$command" --help | sed -n 's/^ \{2,6\}\(-[a-zA-Z], \)*\(--[a-z][a-z-]*\).*/\2/p' | sed "s/^/$command /"
+		stdfit "$command" --help | sed -n 's/^ \{2,6\}\(-[a-zA-Z], \)*\(--[a-z][a-z0-9-]*\).*/\2/p' | sed "s/^/$command /"
 	done | sort -u >"$work/options.program"
 	awk -F ' *[|] *' '/^[|] `-/ {
 		gsub(/\\[|]/, "/")
 		n = split($3, command, " ")
 		text = $2
-		while (match(text, /--[a-z][a-z-]*/)) {
+		while (match(text, /--[a-z][a-z0-9-]*/)) {
 			for (i = 1; i <= n; i++)
 				print command[i], substr(text, RSTART, RLENGTH)
 			text = substr(text, RSTART + RLENGTH)

@@ -585,6 +585,17 @@ static void constrain_F(const struct objective *o, struct bundle_domain *domain,
 	}
 }
 
+/* Two lobes send back no more than one may. */
+static void constrain_lobes(const struct objective *o, struct bundle_domain *domain, int first)
+{
+	double *normal = domain->normal[domain->n_linear];
+
+	memset(normal, 0, sizeof domain->normal[0]);
+	for (int t = 1; t < o->terms.n; t++)
+		normal[first + t - 1] = o->terms.term[t] == TERM_LOBE || o->terms.term[t] == TERM_SECOND;
+	domain->level[domain->n_linear++] = objective_upper_bound(o->options, true);
+}
+
 static struct bundle_domain domain_of(const struct objective *o, int p)
 {
 	struct bundle_domain domain = {.n = n_unknowns(o)};
@@ -598,6 +609,8 @@ static struct bundle_domain domain_of(const struct objective *o, int p)
 
 	if (o->options->fresnel == FRESNEL_F82 && domain.hi[first + 1] > 0)
 		constrain_F(o, &domain, first);
+	if (has_term(o, TERM_SECOND) && !o->options->unbounded)
+		constrain_lobes(o, &domain, first);
 	return domain;
 }
 

@@ -517,6 +517,8 @@ void fit_result_free(struct fit_result *result)
 	result->pwl = NULL;
 }
 
+enum { AXES_STARTS = 8 };
+
 /* The isotropic fit, then axes: from the isotropic optimum as it is, from those of the nested distributions that are anisotropic,
  * and from a scan. */
 static enum status fit_anisotropic(const struct run *run, const struct ndf_class *class, struct nested *nested,
@@ -526,7 +528,7 @@ static enum status fit_anisotropic(const struct run *run, const struct ndf_class
 	struct fit_options isotropic_options = *run->options, options = *run->options;
 	struct fit_result isotropic, inner[NESTED];
 	struct run own = *run;
-	struct shape start[SEARCH_GIVEN];
+	struct shape start[AXES_STARTS];
 	struct found found;
 	long evaluations = 0;
 	int count = 1;
@@ -551,7 +553,7 @@ static enum status fit_anisotropic(const struct run *run, const struct ndf_class
 	if (has_sparse_lambda(run, class))
 		options.gamma = start[0].gamma; /* the other values have been fitted */
 	count += anisotropic_starts(&run->multiresolution, &options, class, &start[0], start + count,
-				    SEARCH_GIVEN - count, &evaluations, &status);
+				    AXES_STARTS - count, &evaluations, &status);
 	if (status == STATUS_OK)
 		status = search_from(&run->multiresolution, &options, class, start, count, &start[0], INFINITY, &found);
 	if (status == STATUS_OK)

@@ -607,20 +607,27 @@ enum status search_from(const struct multiresolution *multiresolution, const str
 {
 	struct fit_options own = *options;
 	struct search s;
-	struct space_point point[SEARCH_GIVEN] = {{.error = 0}};
 	enum status status = STATUS_OK;
 
-	own.starts = 0;
+	/* Of two lobes there is no search_run(), which would have them. */
+	own.starts = options->lobes > 1 ? options->starts : 0;
 	s = new_search(multiresolution, &own, class);
+	struct space_point *point = calloc(SEARCH_GIVEN + (size_t)own.starts, sizeof *point);
+
 	space_from_shape(&s.space, known, s.known.x);
 	s.known.error = error;
 	*found = (struct found){.starts = n_given, .linear.error = INFINITY};
+	if (!point)
+		return STATUS_NO_MEMORY;
 	for (int n = 0; n < n_given; n++)
 		space_from_shape(&s.space, &given[n], point[n].x);
 	const int count = descend(&s, 0, point, n_given, found, &status);
 
 	if (count > 0 && status == STATUS_OK)
 		status = finish(&s, point, count, found);
+	if (count > 0 && status == STATUS_OK && own.starts > 0)
+		status = search_random(&s, point, found);
+	free(point);
 	found->evaluations = s.evaluations;
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }

@@ -5,7 +5,7 @@
 
 #include "fit/search/local.h"
 
-enum { SEARCH_LEVELS = 4, SEARCH_GIVEN = 8 };
+enum { SEARCH_LEVELS = 4, SEARCH_GIVEN = 20 };
 
 /* struct multiresolution - the table of a material and its thinned copies, coarsest first; the last is the full table. */
 struct multiresolution {
@@ -48,7 +48,8 @@ MUST_CHECK enum status search_estimate(const struct multiresolution *multiresolu
 				       const struct ndf_class *class, double *error);
 
 /* search_from - goes down from the given shapes only (at most SEARCH_GIVEN), against a shape that is known already and
- * its error: what leads there, or to nothing better, is given up early. If all is, found->linear.error is INFINITY.
+ * its error: what leads there, or to nothing better, is given up early. If all is, found->linear.error is INFINITY. Of two
+ * lobes the options' random starts come after that.
  * Errors:  as search_run() */
 MUST_CHECK enum status search_from(const struct multiresolution *multiresolution, const struct fit_options *options,
 				   const struct ndf_class *class, const struct shape given[], int n_given,
