@@ -853,7 +853,7 @@ enum status fit_eval(const struct measurement *measurement, const struct cook_to
 	enum status status;
 
 	own.criterion.gaf = model->gaf;
-	if (model->ndf.sigma_x != model->ndf.sigma_y && !measurement->scattered)
+	if (ndf_is_anisotropic(&model->ndf) && !measurement->scattered)
 		return error_set(error, STATUS_DOMAIN, "%s", isotropic_table);
 	status = fit_criterion_check(&own, error);
 	if (status != STATUS_OK)
