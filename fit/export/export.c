@@ -141,6 +141,11 @@ void export_describe(const struct export *export, char text[EXPORT_TEXT])
 				 csv_number(number, model->ndf.sigma_x), csv_number(sigma_y, model->ndf.sigma_y),
 				 csv_number(angle, model->ndf.angle));
 	}
+	if (axes && ndf_is_tilted(&model->ndf)) {
+		char tilt_y[CSV_NUMBER_SIZE];
+		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " tilt %s,%s",
+				 csv_number(number, model->ndf.tilt_x), csv_number(tilt_y, model->ndf.tilt_y));
+	}
 	used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", %s G, %s F", gaf_name(model->gaf),
 			 fresnel_name(model->fresnel));
 	if (fresnel_has_ior(model->fresnel))
