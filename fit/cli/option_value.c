@@ -152,6 +152,10 @@ const struct option_spec option_specs[] = {
 	{"seed", 0, KIND_SEED, SEARCHES, RECORDED, "N", "seed of the random shapes", AT(fit.seed), 0, 0},
 	{"within", 0, KIND_PERCENT, FIT, RECORDED_WITHIN, "P%",
 	 "per material only the simplest model whose error is within P% of the best", AT(within), 0, 1000},
+	{"intervals", 0, KIND_PERCENT, FIT | REPORT, RECORDED_GIVEN, "P%",
+	 "how certain the shape is: between which values sigma, gamma, n ... each may lie, the others refitted, while "
+	 "the error stays within P% of the best; 1 is a good choice",
+	 AT(intervals), 0.01, 1000},
 	{"sigma", 0, KIND_SIGMA, MODEL, NOT_RECORDED, "S|SX,SY", "roughness, along both axes if two", AT(fit.sigma),
 	 FIT_SIGMA_MIN, FIT_SIGMA_MAX},
 	{"angle", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "DEG", "azimuth of the axis of SX; 0 if not given",

@@ -28,7 +28,8 @@ struct options {
 	const char *trace;       /* a CSV of the course of each search; NULL: none */
 	struct shard shard;      /* .n = 0: all files */
 	bool json, quiet, resume, recursive, readable;
-	double within; /* percent; NaN: every NDF as it is */
+	double within;    /* percent; NaN: every NDF as it is */
+	double intervals; /* percent; NaN: none are sought */
 	/* A model, for eval and synth; its sigma, gamma and ior are those of `fit`. */
 	double kd[3], ks[3], k;
 	double f82[F82_PARTS][3], kg[3], ks2[3], sigma2, gamma2;

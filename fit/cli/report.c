@@ -2,6 +2,7 @@
 #include "fit/cli/report.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/terminal.h"
+#include "fit/results/interval_text.h"
 #include "fit/results/result.h"
 
 #include <math.h>
@@ -262,6 +263,21 @@ static void print_axes(FILE *file, char *const *row, bool narrow)
 	print_remark(file, text, narrow);
 }
 
+/* Between which values the parameters may lie, below the row. */
+static void print_intervals(FILE *file, char *const *row)
+{
+	static const char *const name[INTERVAL_PARAMETERS] = {"sigma",    "gamma",  "n",     "k",
+							      "exponent", "sigma2", "gamma2"};
+	char text[INTERVAL_PARAMETERS * (INTERVAL_TEXT_SIZE + SHOWN_SIZE)] = "", one[INTERVAL_TEXT_SIZE];
+	int used = 0;
+	for (enum interval_parameter p = 0; p < INTERVAL_PARAMETERS; p++)
+		if (*interval_text(one, row, p))
+			used += snprintf(text + used, sizeof text - (size_t)used, "%s%s %s", used ? ", " : "", name[p],
+					 one);
+	if (used)
+		print_remark(file, text, true);
+}
+
 /* The columns of a table of fits; of its names, at least: a wider terminal shares the rest between them and remarks. */
 enum { FITS_WIDTH = 126, FITS_NAME = 22 };
 
@@ -319,6 +335,7 @@ static void print_fit(FILE *file, char *const *row, bool narrow, bool weights)
 	print_status(file, row[RESULT_STATUS], narrow);
 	if (!strcmp(row[RESULT_ENERGY], "gain"))
 		print_remark(file, "(sends back more light than it gets)", narrow);
+	print_intervals(file, row);
 	fputc('\n', file);
 }
 

@@ -171,6 +171,8 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 		status = fit_run(context, measurement, fit, result, &file->error);
 	if (status != STATUS_OK)
 		return status;
+	if (!isnan(options->intervals) && fit->specular)
+		status = fit_intervals(context, measurement, fit, options->intervals, result, &file->error);
 	for (int i = 0; i < fit->n_ndf; i++) {
 		if (status == STATUS_OK && result_add(&file->rows, &source, fit, &result[i]) != STATUS_OK)
 			status = error_set(&file->error, STATUS_NO_MEMORY, "out of memory");
