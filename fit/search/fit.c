@@ -646,7 +646,7 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 	const bool scans = run->options->lobes < 2;
 	struct memory *fresh = calloc(1, sizeof *fresh);
 	struct run own = *run;
-	struct fit_result simpler, from_it;
+	struct fit_result simpler;
 	struct shape start[SEARCH_GIVEN];
 	struct found found;
 	long evaluations = 0;
@@ -673,12 +673,17 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 		status = search_from(&run->multiresolution, run->options, class, start, count, &known,
 				     scans ? r->error : INFINITY, &found);
 	}
-	if (status == STATUS_OK && isfinite(found.linear.error))
-		status = result_of(run, class, &found, &from_it);
 	if (status != STATUS_OK)
 		return status;
-	if (isfinite(found.linear.error) && (!scans || from_it.error < r->error))
-		*r = from_it;
+	if (isfinite(found.linear.error)) {
+		struct fit_result from_it;
+
+		status = result_of(run, class, &found, &from_it);
+		if (status != STATUS_OK)
+			return status;
+		if (!scans || from_it.error < r->error)
+			*r = from_it;
+	}
 	take_simpler(run, r, &simpler);
 	r->evaluations += simpler.evaluations + evaluations;
 	r->passes += simpler.passes;
