@@ -21,6 +21,7 @@ struct options {
 		weight[WEIGHT_COUNT]; /* of `fit`, which fits under each of them; fit.criterion.weight is the first */
 	int n_weights;                /* 0: fit.criterion.weight is the only one */
 	enum command command;
+	bool both_bins;         /* what is fitted with one is fitted with the other, too, and the difference told */
 	enum quantity quantity; /* of a file that may have another than it says */
 	enum gamut gamut;
 	const char *output;      /* NULL: standard output */

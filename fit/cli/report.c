@@ -278,6 +278,17 @@ static void print_intervals(FILE *file, char *const *row)
 		print_remark(file, text, true);
 }
 
+/* And how far they move when the entries are taken to stand elsewhere. */
+static void print_other_bins(FILE *file, char *const *row)
+{
+	static const char lead[] = "at bin centres ";
+	char text[sizeof lead + OTHER_BINS_SIZE], moves[OTHER_BINS_SIZE];
+	if (!*other_bins_text(moves, row))
+		return;
+	snprintf(text, sizeof text, "%s%s", lead, moves);
+	print_remark(file, text, true);
+}
+
 /* The columns of a table of fits; of its names, at least: a wider terminal shares the rest between them and remarks. */
 enum { FITS_WIDTH = 126, FITS_NAME = 22 };
 
@@ -336,6 +347,7 @@ static void print_fit(FILE *file, char *const *row, bool narrow, bool weights)
 	if (!strcmp(row[RESULT_ENERGY], "gain"))
 		print_remark(file, "(sends back more light than it gets)", narrow);
 	print_intervals(file, row);
+	print_other_bins(file, row);
 	fputc('\n', file);
 }
 

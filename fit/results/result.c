@@ -90,6 +90,7 @@ const struct csv_column result_columns[RESULT_COLUMNS] = {
 	[RESULT_GAMMA2_HI] = {"gamma2_hi", true},
 	[RESULT_OPEN_ENDS] = {"open_ends", false},
 	[RESULT_OTHER_INTERVALS] = {"other_intervals", false},
+	[RESULT_OTHER_BINS] = {"other_bins", false},
 };
 
 enum result_column result_interval_column(enum interval_parameter parameter)
@@ -415,10 +416,45 @@ static void set_intervals(struct row *row, const struct fit_result *result, stru
 	row->cell[RESULT_OTHER_INTERVALS] = words->others;
 }
 
+/* The numbers of a row that describe a model, name=value;..., into text, and what is in its params but for a table's values. */
+static void write_model(char text[PARAMS_SIZE], const struct row *row, bool tabulated)
+{
+	size_t used = 0;
+	for (enum result_column c = 0; c < RESULT_COLUMNS; c++) {
+		const bool of_model = c == RESULT_ERROR || (c >= RESULT_KD_R && c <= RESULT_IOR) ||
+				      (c >= RESULT_SIGMA_X && c <= RESULT_ANGLE) ||
+				      (c >= RESULT_KG_R && c <= RESULT_GAMMA2);
+		if (of_model && row->cell[c] && *row->cell[c])
+			used += (size_t)snprintf(text + used, PARAMS_SIZE - used, "%s%s=%s", used ? ";" : "",
+						 result_columns[c].name, row->cell[c]);
+	}
+	const char *params = row->cell[RESULT_PARAMS];
+	if (params && *params && !tabulated)
+		snprintf(text + used, PARAMS_SIZE - used, ";%s", params);
+}
+
+/* The fit with the other bins: a row of its own, of which only the model is kept. */
+static enum status set_other_bins(struct row *row, const struct result_source *source,
+				  const struct fit_options *options, const struct fit_result *other,
+				  char text[PARAMS_SIZE])
+{
+	char params[PARAMS_SIZE] = "";
+	struct row *scratch = row_new(source, options, other->model.ndf.class, "");
+	if (!scratch)
+		return STATUS_NO_MEMORY;
+	set_number(scratch, RESULT_ERROR, other->error);
+	set_model(scratch, options, other, params);
+	write_model(text, scratch, ndf_is_tabulated(other->model.ndf.class));
+	row->cell[RESULT_OTHER_BINS] = text;
+	free(scratch);
+	return STATUS_OK;
+}
+
 enum status result_add(struct csv_table *table, const struct result_source *source, const struct fit_options *options,
 		       const struct fit_result *result)
 {
 	char params[PARAMS_SIZE] = "", bounds[NAMES_SIZE], text[STATUS_SIZE];
+	char other_bins[PARAMS_SIZE] = "";
 	struct interval_words words;
 	struct row *row = row_new(source, options, result->model.ndf.class, status_text(text, result));
 	if (!row)
@@ -433,6 +469,10 @@ enum status result_add(struct csv_table *table, const struct result_source *sour
 	set_number(row, RESULT_EVALUATIONS, (double)result->evaluations);
 	set_number(row, RESULT_SECONDS, result->seconds);
 	set_intervals(row, result, &words);
+	if (result->other_bins && set_other_bins(row, source, options, result->other_bins, other_bins) != STATUS_OK) {
+		free(row);
+		return STATUS_NO_MEMORY;
+	}
 	return row_finish(row, table, source->path);
 }
 

@@ -88,6 +88,7 @@ enum result_column {
 	RESULT_GAMMA2_HI,
 	RESULT_OPEN_ENDS,
 	RESULT_OTHER_INTERVALS,
+	RESULT_OTHER_BINS,
 	RESULT_COLUMNS,
 	RESULT_LATER = RESULT_SIGMA_X /* from here on columns that earlier tables lack: what is not there is empty */
 };

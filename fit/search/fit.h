@@ -51,8 +51,9 @@ struct fit_result {
 	 * when E is no higher without a specular term. None when another algorithm than the default one was used. */
 	unsigned undetermined;
 	struct interval_list interval[INTERVAL_PARAMETERS]; /* fit_intervals()'s; of fit_run() none */
-	long evaluations;                                   /* shapes evaluated, on thinned and full tables together */
-	long passes;                                        /* over the full table, those of kd and ks included */
+	const struct fit_result *other_bins; /* the same fit with the other bins, the caller's; of fit_run() NULL */
+	long evaluations;                    /* shapes evaluated, on thinned and full tables together */
+	long passes;                         /* over the full table, those of kd and ks included */
 	double seconds;
 };
 
