@@ -147,6 +147,11 @@ enum status ndf_set_lambda_form(struct ndf *ndf, enum lambda_form form)
 	return STATUS_OK;
 }
 
+bool ndf_is_anisotropic(const struct ndf *ndf)
+{
+	return ndf->sigma_x != ndf->sigma_y || (ndf->pwl && ndf->pwl->anisotropic);
+}
+
 bool ndf_plain(const struct ndf *ndf, struct ndf *plain)
 {
 	const bool ggx = ndf->gamma == 2.0 && ndf->class->ggx_at_2;
@@ -200,7 +205,7 @@ double ndf_G1(const struct ndf *ndf, struct vec3 w)
 struct vec3 ndf_sample(const struct ndf *ndf, double u1, double u2)
 {
 	if (ndf->pwl)
-		return pwl_sample(ndf->pwl, u1, u2);
+		return ndf_from_axes(ndf, pwl_sample(ndf->pwl, u1, u2));
 	const double s = ndf->class->tilt(ndf, u2);
 	const double turn = 2.0 * M_PI * u1;
 	return ndf_from_axes(ndf,

@@ -117,7 +117,7 @@ MUST_CHECK enum status ndf_init_params(struct ndf *ndf, const struct ndf_class *
 MUST_CHECK enum status ndf_init_params_anisotropic(struct ndf *ndf, const struct ndf_class *ndf_class,
 						   const double value[], double sigma_y);
 
-/* ndf_from_pwl - the isotropic piecewise-linear distribution *pwl, which has to outlive *ndf. */
+/* ndf_from_pwl - the piecewise-linear distribution *pwl, which has to outlive *ndf; anisotropic if its tables are. */
 void ndf_from_pwl(struct ndf *ndf, const struct pwl *pwl);
 
 /* ndf_set_lambda_form - the form of Lambda that ndf_lambda() and ndf_G1() use from now on; exact after ndf_init().
@@ -125,6 +125,9 @@ void ndf_from_pwl(struct ndf *ndf, const struct pwl *pwl);
  *          LAMBDA_TRAPEZOID); STATUS_DOMAIN where gamma is none that the form can do (lambda_form.h). *ndf is untouched
  *          then. */
 MUST_CHECK enum status ndf_set_lambda_form(struct ndf *ndf, enum lambda_form form);
+
+/* ndf_is_anisotropic - whether D changes with the azimuth: two roughnesses, or two tables of pl. */
+bool ndf_is_anisotropic(const struct ndf *ndf);
 
 /* ndf_plain - GGX or Beckmann, into *plain, where a distribution is one of them under another name: the same D
  * and Lambda to rounding. Returns: false, *plain untouched, where it is neither, or has the rational form of Lambda. */

@@ -28,6 +28,8 @@ struct ndf_class {
 	double (*lambda)(const struct ndf *ndf, struct vec3 w);
 	/* Density of the slope q where the roughness is s. */
 	double (*P2)(const struct ndf *ndf, double s, double q);
+	/* In its place where the azimuth, radians from the first axis, matters otherwise than by the roughness. */
+	double (*P2_along)(const struct ndf *ndf, double phi, double q);
 	/* tan(theta_m) of the share u of normals, in units of sigma; below it lies the share u. NULL for pl. */
 	double (*tilt)(const struct ndf *ndf, double u);
 	/* Its inverse: the share of normals whose tan(theta_m) is below s, in units of sigma. NULL for pl. */

@@ -8,14 +8,21 @@ double ndf_P22(const struct ndf *ndf, double p, double q)
 	return ndf_D(ndf, m) * (m.z * m.z) * (m.z * m.z);
 }
 
+static double from_axis(const struct ndf *ndf, double phi)
+{
+	return phi - ndf->angle * (M_PI / 180.0);
+}
+
 static double sigma_along(const struct ndf *ndf, double phi)
 {
-	phi -= ndf->angle * (M_PI / 180.0);
+	phi = from_axis(ndf, phi);
 	return hypot(ndf->sigma_x * cos(phi), ndf->sigma_y * sin(phi));
 }
 
 double ndf_P2(const struct ndf *ndf, double phi, double q)
 {
+	if (ndf->class->P2_along)
+		return ndf->class->P2_along(ndf, from_axis(ndf, phi), q);
 	return ndf->class->P2(ndf, sigma_along(ndf, phi), q);
 }
 

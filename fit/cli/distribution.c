@@ -2,6 +2,7 @@
 #include "fit/cli/distribution.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/nearest.h"
+#include "fit/cli/nodes.h"
 #include "fit/results/csv_number.h"
 #include "fit/results/result.h"
 #include "fit/search/free_form.h"
@@ -75,8 +76,8 @@ static bool is_node(const char *name, const void *context)
 	return i >= 0 && i < FREE_FORM_VALUES && !*end;
 }
 
-static enum status make_pl(const struct distribution_words *words, struct distribution *distribution,
-			   struct error *error)
+/* From D0 to D90. */
+static enum status pl_of_params(const struct distribution_words *words, struct pwl *pwl, struct error *error)
 {
 	double D[FREE_FORM_VALUES];
 	enum status status = check_params(words->params, is_node, NULL, error);
@@ -84,17 +85,30 @@ static enum status make_pl(const struct distribution_words *words, struct distri
 		char name[16];
 		snprintf(name, sizeof name, "D%d", i);
 		if (!given(words->params) || !result_param(words->params, name, &D[i]))
-			status = error_set(error, STATUS_DOMAIN, "pl needs the parameters D0 to D%d: %s is missing",
+			status = error_set(error, STATUS_DOMAIN,
+					   "pl needs --nodes, or the parameters D0 to D%d: %s is missing",
 					   FREE_FORM_VALUES - 1, name);
 	}
 	if (status != STATUS_OK)
 		return status;
-	distribution->pwl = calloc(1, sizeof *distribution->pwl);
-	status = distribution->pwl ? free_form_pwl(BINS_NODE, D, distribution->pwl) : STATUS_NO_MEMORY;
-	if (status == STATUS_OK)
-		ndf_from_pwl(&distribution->ndf, distribution->pwl);
+	status = free_form_pwl(BINS_NODE, D, pwl);
 	return status != STATUS_OK ? error_set(error, status, "pl takes no such values: %s", status_str(status))
 				   : STATUS_OK;
+}
+
+static enum status make_pl(const struct distribution_words *words, struct distribution *distribution,
+			   struct error *error)
+{
+	if (given(words->nodes) && given(words->params))
+		return error_set(error, STATUS_DOMAIN, "pl takes nodes or params, not both");
+	distribution->pwl = calloc(1, sizeof *distribution->pwl);
+	if (!distribution->pwl)
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	const enum status status = given(words->nodes) ? nodes_read(words->nodes, distribution->pwl, error)
+						       : pl_of_params(words, distribution->pwl, error);
+	if (status == STATUS_OK)
+		ndf_from_pwl(&distribution->ndf, distribution->pwl);
+	return status;
 }
 
 /* The ellipsoid */
@@ -225,6 +239,8 @@ static enum status make(const struct distribution_words *words, struct distribut
 				 near < 0 ? "" : ": did you mean ", near < 0 ? "" : distribution_name_at(NULL, near),
 				 near < 0 ? "" : "?");
 	}
+	if (given(words->nodes) && !ndf_is_tabulated(class))
+		return error_set(error, STATUS_DOMAIN, "nodes are for pl, not for %s", ndf_name(class));
 	status = ndf_is_tabulated(class) ? make_pl(words, distribution, error)
 					 : make_class(words, class, sigma_x, sigma_y, gamma, &distribution->ndf, error);
 	return status != STATUS_OK ? status : set_lambda(words->lambda, &distribution->ndf, error);

@@ -18,6 +18,7 @@ struct distribution_words {
 			     * sigma and gamma; D0 to D90 of pl at the nodes of MERL's theta_h (`bins` node) and at the horizon;
 			     * alpha_x, alpha_y and theta_x, theta_y, theta_z (degrees, 0 if not given) of the ellipsoid */
 	const char *lambda; /* form of Lambda; of pl "trapezoid" */
+	const char *nodes;  /* pl: a CSV instead of params, nodes.h */
 };
 
 /* struct distribution - one of either kind; freed by distribution_free(). */
@@ -30,7 +31,7 @@ struct distribution {
 };
 
 /* distribution_make - the NDF that the words describe. STATUS_DOMAIN, with what was expected, when they describe none;
- * STATUS_NO_MEMORY. */
+ * STATUS_NO_MEMORY; those of nodes_read(). */
 MUST_CHECK enum status distribution_make(const struct distribution_words *words, struct distribution *distribution,
 					 struct error *error);
 void distribution_free(struct distribution *distribution);

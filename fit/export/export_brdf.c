@@ -637,6 +637,10 @@ static enum status brdf_write(const struct export *export, FILE *file, struct er
 
 static enum status brdf_prepare(struct export *export, struct error *error)
 {
+	if (export_max(export->model.ks) > 0 && ndf_is_tabulated(export->model.ndf.class) &&
+	    export_has_axes(&export->model))
+		return error_set(error, STATUS_UNSUPPORTED,
+				 "the shader has no anisotropic table (--format bsdf and json have every model)");
 	if (cook_torrance_is_rich(&export->model))
 		return error_set(
 			error, STATUS_UNSUPPORTED,

@@ -10,6 +10,7 @@
  *       "parameters": {"sigma": s, ...},         as ndf_param_at() names them; infinity is "inf"
  *                                                anisotropic: sigma along the first axis, "sigma_y", "angle" in degrees, too
  *       "nodes": {"theta": [...], "D": [...]},   pl instead: D, 1/sr, linear in theta, radians, from 0 to pi/2
+ *                                                anisotropic: "Dy" and "angle", degrees, too, and D is along the first axis
  *       "lambda": "exact",                       a name of lambda_form.h
  *       "gaf": "uncorrelated", "fresnel": "dielectric", "ior": n, "k": k,
  *       "fitted": {"path": ..., "weight": ..., "bins": ..., "max_theta": ..., "error": E}     path and E may be null;

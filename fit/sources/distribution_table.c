@@ -163,9 +163,12 @@ static enum status row_directions(const struct options *options, char *const *ro
 enum status distribution_table_evaluate(struct csv_table *table, const struct options *options, char *const *given,
 					struct error *error)
 {
-	const struct distribution_words words = {given[DISTRIBUTION_NDF],     given[DISTRIBUTION_SIGMA],
-						 given[DISTRIBUTION_SIGMA_Y], given[DISTRIBUTION_GAMMA],
-						 given[DISTRIBUTION_PARAMS],  given[DISTRIBUTION_LAMBDA_FORM]};
+	const struct distribution_words words = {.name = given[DISTRIBUTION_NDF],
+						 .sigma = given[DISTRIBUTION_SIGMA],
+						 .sigma_y = given[DISTRIBUTION_SIGMA_Y],
+						 .gamma = given[DISTRIBUTION_GAMMA],
+						 .params = given[DISTRIBUTION_PARAMS],
+						 .lambda = given[DISTRIBUTION_LAMBDA_FORM]};
 	struct distribution distribution;
 	struct line line = {.cell = {0}};
 	struct directions directions;
