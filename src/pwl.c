@@ -235,6 +235,8 @@ enum status pwl_init(struct pwl *pwl, int n_nodes, const double *theta, const do
 	}
 	fill_slopes(pwl);
 	fill_cells(pwl);
+	for (int i = 0; i < n_nodes; i++)
+		pwl->anisotropic = pwl->anisotropic || pwl->nodes[i].Fx != pwl->nodes[i].Fy;
 	return STATUS_OK;
 }
 

@@ -153,7 +153,7 @@ static void what_has_no_axes_is_refused(void **state)
 	stdfit("eval brushed.csv --ndf ggx --sigma 0.2 --angle 10 --ks 1");
 	expect_error(2, "--angle needs --sigma SX,SY");
 	stdfit("eval brushed.csv --ndf gtr --sigma 0.2,0.1 --gamma 2 --ks 1");
-	expect_error(2, "--ndf gtr does not allow these parameters");
+	expect_error(2, "gtr takes one sigma, the same in all directions");
 	stdfit("synth flat.binary --ndf ggx --sigma 0.3 --ks 0.5");
 	expect_code(0);
 	stdfit("fit flat.binary --anisotropic --ndf ggx -q");

@@ -119,11 +119,15 @@ static bool cross(const struct planes *planes, const int plane[], int n, double 
 static void try_vertices(const struct problem *p, const struct planes *planes, int plane[], int depth, double *best)
 {
 	const int n = p->domain.n;
-	double x[VARIABLES], slope[VARIABLES];
 
 	if (depth == n) {
-		if (cross(planes, plane, n, x) && is_inside(&p->domain, x, 1e-12))
+		double x[VARIABLES];
+
+		if (cross(planes, plane, n, x) && is_inside(&p->domain, x, 1e-12)) {
+			double slope[VARIABLES];
+
 			*best = fmin(*best, value(p, x, slope));
+		}
 		return;
 	}
 	for (plane[depth] = depth > 0 ? plane[depth - 1] + 1 : 0; plane[depth] < planes->n; plane[depth]++)
@@ -152,16 +156,18 @@ static void estimate(const struct problem *p, const double x[], double tau, doub
 	memset(second, 0, BUNDLE_SECOND * sizeof *second);
 	for (int n = 0; n < p->n && tau > 0; n++) {
 		double f = 0;
-		int at = 0;
 
 		for (int v = 0; v < p->domain.n; v++)
 			f += x[v] * p->a[n][v];
 		const double window = tau * (f + 1e-2);
 
-		if (fabs(p->m[n] - f) < window)
+		if (fabs(p->m[n] - f) < window) {
+			int at = 0;
+
 			for (int v = 0; v < p->domain.n; v++)
 				for (int w = v; w < p->domain.n; w++)
 					second[at++] += p->a[n][v] * p->a[n][w] / window;
+		}
 	}
 }
 
@@ -406,7 +412,7 @@ static void the_nearest_point_is_the_nearest(void **state)
 	(void)state;
 	for (int trial = 0; trial < 300; trial++) {
 		struct least_distance p = {.dims = 1 + trial % LEAST_DISTANCE_DIMS, .n_rows = 1 + trial % 40};
-		double inside[LEAST_DISTANCE_DIMS], given[LEAST_DISTANCE_DIMS];
+		double inside[LEAST_DISTANCE_DIMS] = {0}, given[LEAST_DISTANCE_DIMS] = {0};
 
 		for (int d = 0; d < p.dims; d++) {
 			inside[d] = uniform(&seed);

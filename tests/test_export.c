@@ -5,6 +5,7 @@
 #include "fit/error/model_table.h"
 #include "fit/error/sample_set.h"
 #include "fit/export/model_json.h"
+#include "gltf_buffer.h"
 #include "make_table.h"
 #include "run_program.h"
 #include "xml.h"
@@ -529,7 +530,7 @@ static void gltf_is_fitted_in_its_own_terms(void **state)
 	assert_true(g.color[2] > 1);
 	check_between(gltf_error(&g, &truth), 0, 1e-6, "error where F hardly changes");
 	export_it(SMALL " --format gltf " LOBE " --ndf ggx --sigma 2.5 --gaf correlated --fresnel schlick");
-	g = read_gltf();
+	read_gltf();
 	expect_out("no roughness of 2.5");
 	assert_null(strstr(last.out, "exact"));
 	export_it("--format gltf --kd 0.31,0.12,0.047");
@@ -921,27 +922,6 @@ static void refusals_are_one_line(void **state)
 	assert_string_equal(last.out, "");
 }
 
-/* The bytes of the one buffer, decoded. */
-static unsigned char *buffer_of(const json_t *gltf, size_t *size)
-{
-	static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-	const json_t *buffer = json_array_get(json_object_get(gltf, "buffers"), 0);
-	const char *at = strchr(json_string_value(json_object_get(buffer, "uri")), ',') + 1;
-	unsigned char *bytes = malloc(strlen(at));
-	unsigned bits = 0;
-
-	assert_non_null(bytes);
-	*size = 0;
-	for (int n = 1; *at; at++, n++) {
-		assert_non_null(strchr(digits, *at));
-		bits = bits << 6 | (unsigned)(strchr(digits, *at) - digits);
-		for (int shift = 16; n % 4 == 0 && shift >= 0; shift -= 8)
-			bytes[(*size)++] = (unsigned char)(bits >> shift & 255);
-	}
-	assert_int_equal(*size, json_integer_value(json_object_get(buffer, "byteLength")));
-	return bytes;
-}
-
 /* The sphere that a viewer shows: a unit sphere, closed, its triangles seen from outside. */
 static void gltf_has_a_sphere(void **state)
 {
@@ -953,7 +933,7 @@ static void gltf_has_a_sphere(void **state)
 	export_it(SMALL " --format gltf " LOBE " --ndf ggx --sigma 0.09 --gaf correlated --fresnel schlick");
 	json_t *gltf = json_loads(last.out, JSON_REJECT_DUPLICATES, &error);
 	assert_non_null(gltf);
-	unsigned char *bytes = buffer_of(gltf, &size);
+	unsigned char *bytes = gltf_buffer(gltf, &size);
 	const json_t *accessors = json_object_get(gltf, "accessors");
 	const size_t n = (size_t)member_number(json_array_get(accessors, 0), "count");
 	const size_t vertices = (size_t)member_number(json_array_get(accessors, 1), "count");
@@ -985,20 +965,33 @@ static void gltf_has_a_sphere(void **state)
 	free(bytes);
 }
 
-/* Where node finds gltf-validator of npm (NODE_PATH): no error, warning, information or hint. */
+/* Where gltf-validator is installed (`make page-tools`, or npm's global packages): no error, warning, information or
+ * hint. */
 static void gltf_validator_takes_it(void **state)
 {
+	static const char *const models[] = {
+		LOBE " --ndf ggx --sigma 0.09 --ior 40 --gaf correlated --fresnel schlick",
+		LOBE " --ndf ggx --sigma 0.3,0.1 --angle 20",
+		"--kd 0.31,0.12,0.047",
+	};
+
 	(void)state;
-	shell("node -e 'require(\"gltf-validator\")'");
+	shell("for root in \"$(dirname \"${STDFIT:-build/stdfit}\")/npm/node_modules\" \"$(npm root -g)\"; do "
+	      "[ ! -e \"$root/gltf-validator\" ] || { printf %s \"$root\"; exit; }; done; exit 1");
 	if (last.code != 0)
 		skip_for_want_of("the npm package gltf-validator");
-	export_it(SMALL " --format gltf " LOBE
-			" --ndf ggx --sigma 0.09 --ior 40 --gaf correlated --fresnel schlick -o v.gltf");
-	shell("node -e 'require(\"gltf-validator\").validateBytes(new "
-	      "Uint8Array(require(\"fs\").readFileSync(\"v.gltf\")))"
-	      ".then(r => console.log(JSON.stringify(r.issues.messages)))'");
-	expect_code(0);
-	assert_string_equal(last.out, "[]\n");
+	assert_int_equal(setenv("NODE_PATH", last.out, 1), 0);
+	for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
+		char arguments[200];
+
+		snprintf(arguments, sizeof arguments, SMALL " --format gltf %s -o v.gltf", models[i]);
+		export_it(arguments);
+		shell("node -e 'require(\"gltf-validator\").validateBytes(new "
+		      "Uint8Array(require(\"fs\").readFileSync(\"v.gltf\")))"
+		      ".then(r => console.log(JSON.stringify(r.issues.messages)))'");
+		expect_code(0);
+		assert_string_equal(last.out, "[]\n");
+	}
 }
 
 int main(void)

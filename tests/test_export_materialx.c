@@ -105,7 +105,6 @@ static void read_numbers(const struct xml *input, double x[3])
 static void check_input(const struct xml *document, const struct definition *definition, const struct xml *input)
 {
 	const struct input *known = definition->input;
-	double x[3];
 
 	while (known->name && strcmp(known->name, xml_get(input, "name")) != 0)
 		known++;
@@ -115,12 +114,16 @@ static void check_input(const struct xml *document, const struct definition *def
 	assert_string_equal(xml_get(input, "type"), known->type);
 	assert_int_equal(input->n_attributes, 3);
 	if (numbers_of(known->type)) {
+		double x[3];
+
 		read_numbers(input, x);
 		return;
 	}
 	const struct xml *node = xml_named(document, xml_get(input, "nodename"));
-	if (!node)
+	if (!node) {
 		fail_msg("no node '%s'", xml_get(input, "nodename"));
+		return;
+	}
 	assert_string_equal(xml_get(node, "type"), known->type);
 }
 

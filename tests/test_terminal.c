@@ -78,7 +78,7 @@ static void tables_fit_the_terminal(void **state)
 {
 	(void)state;
 	static const char *const shown[] = {"merge all.csv", "compare all.csv", "compare --help",
-					    LONG_NAME ".binary " CHEAP " -q",
+					    (LONG_NAME ".binary " CHEAP " -q"),
 					    "ndf std --sigma 0.2 --gamma 2 --theta 10 --theta-i 20"};
 	static const int columns[] = {80, 100};
 

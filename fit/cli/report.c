@@ -262,6 +262,28 @@ static void print_axes(FILE *file, char *const *row, bool narrow)
 	print_remark(file, text, narrow);
 }
 
+/* What a model of more terms than two has beside the columns. */
+static void print_terms(FILE *file, char *const *row, bool narrow)
+{
+	char a[SHOWN_SIZE], b[SHOWN_SIZE], c[SHOWN_SIZE], text[3 * SHOWN_SIZE + 32];
+
+	if (*row[RESULT_F0_R]) {
+		snprintf(text, sizeof text, "(F0 %s, F82 %s, F90 %s)", rgb_text(a, row, RESULT_F0_R),
+			 rgb_text(b, row, RESULT_F82_R), rgb_text(c, row, RESULT_F90_R));
+		print_remark(file, text, narrow);
+	}
+	if (*row[RESULT_KG_R]) {
+		snprintf(text, sizeof text, "(kg %s, exponent %.4g)", rgb_text(a, row, RESULT_KG_R),
+			 result_number(row, RESULT_EXPONENT));
+		print_remark(file, text, narrow);
+	}
+	if (*row[RESULT_SIGMA2]) {
+		snprintf(text, sizeof text, "(ks2 %s, sigma2 %.5g, gamma2 %.5g)", rgb_text(a, row, RESULT_KS2_R),
+			 result_number(row, RESULT_SIGMA2), result_number(row, RESULT_GAMMA2));
+		print_remark(file, text, narrow);
+	}
+}
+
 /* The columns of a table of fits; of its names, at least: a wider terminal shares the rest between them and remarks. */
 enum { FITS_WIDTH = 126, FITS_NAME = 22 };
 
@@ -316,6 +338,7 @@ static void print_fit(FILE *file, char *const *row, bool narrow, bool weights)
 	if (*text)
 		print_remark(file, bound, narrow);
 	print_axes(file, row, narrow);
+	print_terms(file, row, narrow);
 	print_status(file, row[RESULT_STATUS], narrow);
 	if (!strcmp(row[RESULT_ENERGY], "gain"))
 		print_remark(file, "(sends back more light than it gets)", narrow);

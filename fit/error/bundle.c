@@ -295,10 +295,12 @@ static double unit_of_cuts(const struct bundle *b)
 static void prove(struct bundle *b)
 {
 	const double unit = unit_of_cuts(b);
-	double step[BUNDLE_VARIABLES];
 
-	if (unit > 0)
+	if (unit > 0) {
+		double step[BUNDLE_VARIABLES];
+
 		b->lower_bound = fmax(bundle_step(b, HARDLY, unit, step), b->lower_bound);
+	}
 	b->lower_bound = fmin(b->lower_bound, b->error);
 	b->gap = b->error - b->lower_bound;
 }

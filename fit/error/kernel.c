@@ -315,4 +315,54 @@ static void pass(int terms, int members, const float *m, const float *const term
 	of[terms](members, m, term, at, sums);
 }
 
-const struct kernel KERNEL_NAME = {NAME_TEXT(KERNEL_NAME), lobe, lobe_scattered, pass};
+__attribute__((always_inline)) static inline void
+signs_of(int terms, int members, const float *m, const float *const term[], const double x[],
+	 float *const weight[]) /* cppcheck-suppress constParameter; it is written through */
+{
+	const lanes zero = {0};
+
+	for (int n = 0; n < KERNEL_BLOCK; n += LANES) {
+		lanes f = (float)x[0] * *(const lanes *)(term[0] + n);
+		lanes_int sign = {0};
+
+		for (int t = 1; t < terms; t++)
+			f += (float)x[t] * *(const lanes *)(term[t] + n);
+		/* Each comparison is -1 where it holds. */
+		for (int a = 0; a < members; a++) {
+			const lanes r = *(const lanes *)(m + n + a * KERNEL_BLOCK) - f;
+
+			sign += (r < zero) - (r > zero);
+		}
+		const lanes sum = __builtin_convertvector(sign, lanes);
+
+		for (int t = 1; t < terms; t++)
+			*(lanes *)(weight[t] + n) += (float)x[t] * sum;
+	}
+}
+
+static void signs(int terms, int members, const float *m, const float *const term[], const double x[],
+		  float *const weight[])
+{
+	if (terms == 2 && members == 2)
+		signs_of(2, 2, m, term, x, weight);
+	else if (terms == 2 && members == 1)
+		signs_of(2, 1, m, term, x, weight);
+	else
+		signs_of(terms, members, m, term, x, weight);
+}
+
+static double change(const float *weight, const float *from, const float *to)
+{
+	lanes_double sum = {0};
+
+	for (int n = 0; n < KERNEL_BLOCK; n += RUN) {
+		lanes a = {0};
+
+		for (int i = n; i < n + RUN; i += LANES)
+			a += *(const lanes *)(weight + i) * (*(const lanes *)(to + i) - *(const lanes *)(from + i));
+		sum += __builtin_convertvector(a, lanes_double);
+	}
+	return total(&sum);
+}
+
+const struct kernel KERNEL_NAME = {NAME_TEXT(KERNEL_NAME), lobe, lobe_scattered, pass, signs, change};

@@ -106,6 +106,12 @@ struct kernel {
 	 * coefficients. */
 	void (*pass)(int terms, int members, const float *value, const float *const term[],
 		     const struct kernel_evaluation *at, struct kernel_sums *sums);
+	/* signs - of each sample of one block the sum of sign(r) over the members, for the coefficients x; times x_t it is
+	 * added to weight[t] for t >= 1. */
+	void (*signs)(int terms, int members, const float *value, const float *const term[], const double x[],
+		      float *const weight[]);
+	/* change - the sum of weight (to - from) of one block. */
+	double (*change)(const float *weight, const float *from, const float *to);
 };
 
 extern const struct kernel kernel_plain;

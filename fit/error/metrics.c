@@ -216,7 +216,7 @@ static void add_sums(struct sums *all, const struct sums *sums)
 static void sum_scattered(const struct scattered *s, const struct cook_torrance *model, size_t n, struct sums *sums)
 {
 	struct row row = {.n = 1, .rich = cook_torrance_is_rich(model)};
-	double f[MERL_CHANNELS];
+	double f[MERL_CHANNELS] = {0};
 
 	row.c[0] = s->wi[n].z * s->wo[n].z;
 	if (row.rich)
@@ -225,7 +225,7 @@ static void sum_scattered(const struct scattered *s, const struct cook_torrance 
 		row.lobe[0] = cook_torrance_lobe(model, s->wi[n], s->wo[n]);
 	for (int c = 0; c < MERL_CHANNELS; c++) {
 		row.m[c][0] = (double)s->value[c][n];
-		row.f[c][0] = row.rich ? f[c] : 0;
+		row.f[c][0] = f[c];
 	}
 	sum_row(&row, model, (double)s->solid_angle[n], sums);
 }

@@ -72,6 +72,7 @@ struct objective {
 	const struct fit_options *options;
 	const struct ndf_class *class;
 	const struct kernel *kernel;
+	enum masking_density density;
 	int threads; /* more than 1: called by one thread of an OpenMP team, whose others help */
 	struct term_list terms;
 	struct objective_lobe {
@@ -119,6 +120,14 @@ void objective_unfix(struct objective *objective);
 /* objective_use - from now on the given isotropic distribution, whatever sigma and gamma a shape has, from tables; *ndf is only
  * read during the call. */
 void objective_use(struct objective *objective, const struct ndf *ndf);
+
+/* objective_tabulate - the tables of a shape from which its terms are computed. Returns STATUS_DOMAIN outside the NDF's domain.
+ * objective_term_block - term t >= 1 of one block of samples, from them. */
+MUST_CHECK enum status objective_tabulate(struct objective *objective, const struct shape *shape);
+void objective_term_block(const struct objective *objective, int t, int block, float *term);
+
+/* objective_slices - a solve goes over slices: a channel each, or one that stands for all. */
+int objective_slices(const struct objective *objective);
 
 /* objective_lobe - the terms of a shape, sample by sample, into objective->term: [1] is the lobe for ks = 1.
  * Returns STATUS_DOMAIN outside the NDF's domain. */

@@ -92,7 +92,7 @@ enum status export_shown_table(const struct export *export, struct measurement *
 
 bool export_has_axes(const struct cook_torrance *model)
 {
-	return export_max(model->ks) > 0 && model->ndf.sigma_x != model->ndf.sigma_y;
+	return export_max(model->ks) > 0 && ndf_is_anisotropic(&model->ndf);
 }
 
 enum status export_as_it_is(struct export *export, const char *text)
@@ -132,11 +132,19 @@ void export_describe(const struct export *export, char text[EXPORT_TEXT])
 	for (int i = axes; ndf_param_at(model->ndf.class, i); i++)
 		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " %s %s",
 				 ndf_param_at(model->ndf.class, i)->name, csv_number(number, model->ndf.param[i]));
-	if (axes) {
+	if (axes && ndf_is_tabulated(model->ndf.class)) {
+		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " of two tables, angle %s",
+				 csv_number(number, model->ndf.angle));
+	} else if (axes) {
 		char sigma_y[CSV_NUMBER_SIZE], angle[CSV_NUMBER_SIZE];
 		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " sigma_x %s sigma_y %s angle %s",
 				 csv_number(number, model->ndf.sigma_x), csv_number(sigma_y, model->ndf.sigma_y),
 				 csv_number(angle, model->ndf.angle));
+	}
+	if (axes && ndf_is_tilted(&model->ndf)) {
+		char tilt_y[CSV_NUMBER_SIZE];
+		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " tilt %s,%s",
+				 csv_number(number, model->ndf.tilt_x), csv_number(tilt_y, model->ndf.tilt_y));
 	}
 	used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", %s G, %s F", gaf_name(model->gaf),
 			 fresnel_name(model->fresnel));

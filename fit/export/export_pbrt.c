@@ -45,18 +45,21 @@ static void write_diffuse(FILE *file, const double kd[3], double weight)
 
 static void write_lobe(FILE *file, const struct cook_torrance *model)
 {
-	char n[CSV_NUMBER_SIZE], k[CSV_NUMBER_SIZE], sigma[CSV_NUMBER_SIZE], sigma_y[CSV_NUMBER_SIZE];
+	char n[CSV_NUMBER_SIZE], k[CSV_NUMBER_SIZE], sigma[CSV_NUMBER_SIZE];
 	csv_number(n, model->n);
 	csv_number(k, model->fresnel == FRESNEL_CONDUCTOR ? model->k : 0);
 	csv_number(sigma, model->ndf.sigma_x);
 	fprintf(file,
 		"\"string type\" \"conductor\" \"spectrum eta\" [ 200 %s 1000 %s ] \"spectrum k\" [ 200 %s 1000 %s ]\n",
 		n, n, k, k);
-	if (export_has_axes(model))
+	if (export_has_axes(model)) {
+		char sigma_y[CSV_NUMBER_SIZE];
+
 		fprintf(file, "    \"float uroughness\" %s \"float vroughness\" %s", sigma,
 			csv_number(sigma_y, model->ndf.sigma_y));
-	else
+	} else {
 		fprintf(file, "    \"float roughness\" %s", sigma);
+	}
 	fprintf(file, " \"bool remaproughness\" false\n");
 }
 

@@ -17,7 +17,8 @@ struct surface {
 		const struct ndf *ndf; /* of the model; NULL: it has no such lobe */
 		struct sampler sampler;
 		bool own;               /* it draws the model's own normals, whose D is at hand */
-		struct masking masking; /* G1 */
+		bool turns;             /* G1 changes with the azimuth, and is computed; else */
+		struct masking masking; /* it is tabulated */
 	} lobe[SURFACE_LOBES];
 };
 

@@ -239,7 +239,7 @@ struct nested {
 	struct fit_result result[NESTED], of_class[FIT_NDFS_MAX];
 };
 
-/* What a run remembers of its searches: 600 kB, too much for the stack of a thread. */
+/* What a run remembers of its searches: megabytes, too much for the stack of a thread. */
 struct memory {
 	struct nested nested, anisotropic;
 	struct scan_minima minima[FIT_NDFS_MAX];
@@ -249,14 +249,13 @@ static enum status fit_alone(const struct run *run, const struct ndf_class *clas
 {
 	const double begin = search_clock();
 	struct found found;
-	enum status status = run->options->algorithm ? algorithm_run(&run->multiresolution.table[SEARCH_LEVELS - 1],
-								     run->options, class, &found)
-						     : search_run(&run->multiresolution, run->options, class, &found);
+	enum status status =
+		run->options->algorithm
+			? algorithm_run(&run->multiresolution.table[SEARCH_LEVELS - 1], run->options, class, &found)
+			: search_run(&run->multiresolution, run->options, class, &run->minima[index_of(class)], &found);
 
 	if (status == STATUS_OK)
 		status = result_of(run, class, &found, r);
-	if (status == STATUS_OK && !run->options->algorithm)
-		run->minima[index_of(class)] = found.minima;
 	r->seconds = search_clock() - begin;
 	return status;
 }
@@ -405,16 +404,18 @@ static enum status fit_each_gamma(const struct run *run, const struct ndf_class 
 	struct fit_options options = *run->options;
 	struct run own = *run;
 	enum status status = STATUS_OK;
-	struct scan_minima *minima = &run->minima[index_of(class)], best_minima = *minima;
+	struct scan_minima *minima = &run->minima[index_of(class)], *best_minima = malloc(sizeof *best_minima);
 	struct fit_result one = {0};
 	struct ndf ndf;
 	struct further sum = {.options = run->options};
 	long passes = 0;
 	double worst = 0;
 
+	*r = (struct fit_result){.error = INFINITY};
+	if (!best_minima)
+		return STATUS_NO_MEMORY;
 	own.options = &options;
 	trace_further(&options, &sum);
-	*r = (struct fit_result){.error = INFINITY};
 	for (options.gamma = 1.5; options.gamma <= 16 && status == STATUS_OK; options.gamma += 0.5) {
 		const struct shape shape = {.sigma = 1, .gamma = options.gamma};
 
@@ -426,11 +427,13 @@ static enum status fit_each_gamma(const struct run *run, const struct ndf_class 
 		sum.seconds += one.seconds;
 		if (status == STATUS_OK && one.error < r->error) {
 			*r = one;
-			best_minima = *minima;
+			*best_minima = *minima;
 		}
 		worst = fmax(worst, one.error);
 	}
-	*minima = best_minima;
+	if (r->error < INFINITY)
+		*minima = *best_minima;
+	free(best_minima);
 	if (worst <= undetermined_limit(r->error))
 		r->undetermined = BOUND_GAMMA;
 	r->evaluations = sum.evaluations;
@@ -514,6 +517,8 @@ void fit_result_free(struct fit_result *result)
 	result->pwl = NULL;
 }
 
+enum { AXES_STARTS = 8 };
+
 /* The isotropic fit, then axes: from the isotropic optimum as it is, from those of the nested distributions that are anisotropic,
  * and from a scan. */
 static enum status fit_anisotropic(const struct run *run, const struct ndf_class *class, struct nested *nested,
@@ -523,7 +528,7 @@ static enum status fit_anisotropic(const struct run *run, const struct ndf_class
 	struct fit_options isotropic_options = *run->options, options = *run->options;
 	struct fit_result isotropic, inner[NESTED];
 	struct run own = *run;
-	struct shape start[SEARCH_GIVEN];
+	struct shape start[AXES_STARTS];
 	struct found found;
 	long evaluations = 0;
 	int count = 1;
@@ -548,7 +553,7 @@ static enum status fit_anisotropic(const struct run *run, const struct ndf_class
 	if (has_sparse_lambda(run, class))
 		options.gamma = start[0].gamma; /* the other values have been fitted */
 	count += anisotropic_starts(&run->multiresolution, &options, class, &start[0], start + count,
-				    SEARCH_GIVEN - count, &evaluations, &status);
+				    AXES_STARTS - count, &evaluations, &status);
 	if (status == STATUS_OK)
 		status = search_from(&run->multiresolution, &options, class, start, count, &start[0], INFINITY, &found);
 	if (status == STATUS_OK)
@@ -646,7 +651,7 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 	const bool scans = run->options->lobes < 2;
 	struct memory *fresh = calloc(1, sizeof *fresh);
 	struct run own = *run;
-	struct fit_result simpler, from_it;
+	struct fit_result simpler;
 	struct shape start[SEARCH_GIVEN];
 	struct found found;
 	long evaluations = 0;
@@ -673,12 +678,17 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 		status = search_from(&run->multiresolution, run->options, class, start, count, &known,
 				     scans ? r->error : INFINITY, &found);
 	}
-	if (status == STATUS_OK && isfinite(found.linear.error))
-		status = result_of(run, class, &found, &from_it);
 	if (status != STATUS_OK)
 		return status;
-	if (isfinite(found.linear.error) && (!scans || from_it.error < r->error))
-		*r = from_it;
+	if (isfinite(found.linear.error)) {
+		struct fit_result from_it;
+
+		status = result_of(run, class, &found, &from_it);
+		if (status != STATUS_OK)
+			return status;
+		if (!scans || from_it.error < r->error)
+			*r = from_it;
+	}
 	take_simpler(run, r, &simpler);
 	r->evaluations += simpler.evaluations + evaluations;
 	r->passes += simpler.passes;
@@ -843,7 +853,7 @@ enum status fit_eval(const struct measurement *measurement, const struct cook_to
 	enum status status;
 
 	own.criterion.gaf = model->gaf;
-	if (model->ndf.sigma_x != model->ndf.sigma_y && !measurement->scattered)
+	if (ndf_is_anisotropic(&model->ndf) && !measurement->scattered)
 		return error_set(error, STATUS_DOMAIN, "%s", isotropic_table);
 	status = fit_criterion_check(&own, error);
 	if (status != STATUS_OK)

@@ -6,7 +6,7 @@
 
 #include "fit/error/objective.h"
 
-enum { SPACE_DIMS = 8, SPACE_VALUES = 34 };
+enum { SPACE_DIMS = 8, SPACE_VALUES = 34, SPACE_SECOND = SPACE_DIMS * (SPACE_DIMS + 1) / 2 };
 
 enum coordinate {
 	COORDINATE_SIGMA,        /* ln sigma, of STD's sigma for the distributions that are STD with another sigma */
@@ -48,6 +48,8 @@ struct space_point {
 	double x[SPACE_DIMS];
 	double error;
 	struct linear linear; /* kd and ks there; its error is 0 where they are not known */
+	/* Second derivatives of E, lengths in spacings of the scan: row by row from the diagonal on; all 0: not known. */
+	float curvature[SPACE_SECOND];
 };
 
 /* space_init - what the options leave free for an NDF; nothing without a specular term. */

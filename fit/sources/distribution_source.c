@@ -12,15 +12,14 @@ int distribution_source_check(const struct options *options)
 		return options_usage(options->command, "--phi-i means nothing without --theta-i");
 	if (!options->from && options->n_paths != 1)
 		return options_usage(options->command, "expected one NAME, or --from, found %d", options->n_paths);
-	/* Its weight has masking alone, of wo. */
-	if (!options->from && !strcmp(options->path[0], "ellipsoid") && options_given(options, "gaf"))
-		return options_usage(options->command, "--gaf means nothing for ellipsoid");
 	if (!options->from)
 		return -1;
 	if (options->n_paths)
 		return options_usage(options->command, "NAME and --from exclude each other");
 	if (options_given(options, "params"))
 		return options_usage(options->command, "--params and --from exclude each other");
+	if (options_given(options, "nodes"))
+		return options_usage(options->command, "--nodes and --from exclude each other");
 	return model_source_check(options, false);
 }
 
@@ -38,6 +37,7 @@ static enum status describe(const struct options *options, struct described *ite
 		.sigma_y = item->sigma_y,
 		.gamma = options->gamma_words,
 		.params = options->params,
+		.nodes = options->nodes,
 		.lambda = options_given(options, "lambda") ? lambda_form_name(options->fit.lambda) : NULL,
 	};
 	if (length >= sizeof item->sigma || (comma && strlen(comma + 1) >= sizeof item->sigma_y))

@@ -83,8 +83,8 @@ enum status export_pictures(struct export *export, struct measurement *measureme
 	if (status != STATUS_OK)
 		return status;
 	/* What turns is shown as it is, with tangents. */
-	studio.options.tangents = (measurement && measurement_turns(measurement)) ||
-				  export->source.model->ndf.sigma_x != export->source.model->ndf.sigma_y;
+	studio.options.tangents =
+		(measurement && measurement_turns(measurement)) || ndf_is_anisotropic(&export->source.model->ndf);
 	if (measurement && !measurement_turns(measurement))
 		status = measurement_fill(measurement, studio.bins, fit->threads);
 	if (status == STATUS_OK)
