@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Targets: all (default), check, check-long, check-docs, demo, bench, figures, stability, asan, ubsan, tsan, lint, architecture,
-# valgrind, compilers, fuzz, killtest, page-tools, install, uninstall, dist, deb, clean. Those that check or show something install what is
+# valgrind, compilers, fuzz, killtest, export-table, page-tools, install, uninstall, dist, deb, clean. Those that check or show something install what is
 # missing first.
 VERSION := 0.2.0
 
@@ -203,6 +203,13 @@ demo: setup
 	@$(MAKE) --no-print-directory all
 	@scripts/demo.sh $(BUILD)/stdfit
 
+# The STD fits of the files in MERL=DIR, exported in every format: BUILD/export_table.csv, and the tables of docs/export.md.
+export-table: setup
+	@$(MAKE) --no-print-directory all
+	@$(BUILD)/stdfit fit '$(MERL)' -q --ndf std --weight solid-angle -o $(BUILD)/export_fits.csv
+	@scripts/export_table.sh $(BUILD)/stdfit $(BUILD)/export_fits.csv >$(BUILD)/export_table.csv
+	@awk -f scripts/export_table.awk $(BUILD)/export_table.csv
+
 # The sessions, links and options of README.md and docs/ against the program; sessions of measured tables with MERL=DIR.
 check-docs: setup
 	@$(MAKE) --no-print-directory all library
@@ -217,6 +224,6 @@ clean:
 
 include scripts/install.mk
 
-.PHONY: all setup check check-long check-docs check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo page-tools clean
+.PHONY: all setup check check-long check-docs check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo export-table page-tools clean
 
 -include $(lib_objects:.o=.d) $(BUILD)/fit/commands/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))
