@@ -13,6 +13,8 @@ static double from_axis(const struct ndf *ndf, double phi)
 
 double ndf_cdf_phi(const struct ndf *ndf, double phi)
 {
+	if (ndf_is_tilted(ndf))
+		return NAN;
 	const double axis = ndf->angle * (M_PI / 180.0);
 	if (ndf->pwl)
 		return pwl_cdf_phi(ndf->pwl, phi - axis) - pwl_cdf_phi(ndf->pwl, -axis);
@@ -27,6 +29,8 @@ static double below(const struct ndf *ndf, double theta, double s)
 
 double ndf_cdf_theta(const struct ndf *ndf, double theta, double phi)
 {
+	if (ndf_is_tilted(ndf))
+		return NAN;
 	phi -= ndf->angle * (M_PI / 180.0);
 	if (ndf->pwl)
 		return pwl_cdf_theta(ndf->pwl, theta, phi);
@@ -70,6 +74,8 @@ static double signed_integral(double (*f)(double x, void *params), struct joint 
 
 double ndf_cdf(const struct ndf *ndf, double theta, double phi)
 {
+	if (ndf_is_tilted(ndf))
+		return NAN;
 	struct joint joint = {ndf, theta};
 	if (ndf->pwl)
 		return signed_integral(by_azimuth, &joint, phi);

@@ -37,7 +37,9 @@ enum status ndf_moment(const struct ndf *ndf, double phi, int order, double *mom
 	if (order < 0 || !(order + 2.0 < tail_exponent(ndf)))
 		return STATUS_DOMAIN;
 	if (order % 2 == 1) {
-		*moment = 0.0;
+		phi = from_axis(ndf, phi);
+		/* a tilted one has no other */
+		*moment = ndf_is_tilted(ndf) ? -(ndf->lean_x * cos(phi) + ndf->lean_y * sin(phi)) : 0.0;
 		return STATUS_OK;
 	}
 	const double s = sigma_along(ndf, phi);

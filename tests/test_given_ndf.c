@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Models whose NDF is given beyond sigma and gamma: a table of nodes, along one axis or two. */
+/* Models whose NDF is given beyond sigma and gamma: a table of nodes, along one axis or two; an ellipsoid. */
 #include "chi_square.h"
 #include "fit/export/model_json.h"
 #include "fit/render/surface.h"
@@ -314,6 +314,99 @@ static void what_is_no_table_of_nodes_is_told(void **state)
 	pwl_free(&pwl);
 }
 
+/* Tilted GGX by its tilt, by angles and by its matrix. */
+#define TILTED "--kd 0.1 --ks 1 --ndf ellipsoid --sigma 0.3,0.1 --angle 20 --params 'tilt_x=0.15;tilt_y=-0.05' "
+
+static void an_ellipsoid_is_a_model(void **state)
+{
+	(void)state;
+	stdfit("synth tilted.csv " TILTED);
+	expect_code(0);
+	stdfit("eval tilted.csv --json " TILTED);
+	expect_code(0);
+	check_between(json_number("error_none"), 0, 1e-7, "E");
+	stdfit("eval tilted.csv --json --kd 0.1 --ks 1 --ndf ggx --sigma 0.3,0.1 --angle 20");
+	expect_code(0);
+	check_between(json_number("error_none"), 0.1, 5, "E of GGX, which is level");
+	stdfit("export " TILTED "--format json -o tilted.json");
+	expect_code(0);
+	stdfit("export --from tilted.json --format json -o again.json");
+	expect_code(0);
+	shell("cmp tilted.json again.json");
+	expect_code(0);
+	stdfit("eval tilted.csv --from tilted.json --json");
+	check_between(json_number("error_none"), 0, 1e-7, "E of the JSON");
+	stdfit("export --from tilted.json --format brdf");
+	expect_error(1, "no tilted facets (--format bsdf");
+	stdfit("export --from tilted.json --format merl -o no.binary");
+	expect_error(1, "--format bsdf");
+	stdfit("synth no.binary " TILTED);
+	expect_error(2, "a MERL file is isotropic");
+	stdfit("eval tilted.csv --from tilted.json --angle 3");
+	expect_error(2, "--angle and --from exclude each other");
+}
+
+/* In the tensor file of either format, all round. */
+static void tilted_facets_are_in_the_tensor_file(void **state)
+{
+	(void)state;
+	stdfit("synth tilted.csv " TILTED);
+	for (int i = 0; i < 2; i++) {
+		stdfit(i ? "export " TILTED "--format bsdf --size 8e6 -q -o tilted.bsdf"
+			 : "export " TILTED "--format bsdf-rgb --size 8e6 -q -o tilted.bsdf");
+		expect_code(0);
+		stdfit("eval tilted.bsdf --json " TILTED);
+		expect_code(0);
+		check_between(json_number("error_solid_angle"), 0, 0.03, "E of the tensor file");
+	}
+	stdfit("render tilted.csv -q --size 16 --samples 16 --json " TILTED);
+	expect_code(0);
+	check_between(json_number("delta_e"), 0, 3, "delta E of the sphere of its samples");
+	stdfit("render -q --size 16 --samples 4 -o tilted.pfm " TILTED);
+	expect_code(0);
+	/* A substitute is level. */
+	stdfit("export " TILTED "--format pbrt -q");
+	expect_code(0);
+	expect_out("no NDF ellipsoid");
+}
+
+static void it_has_several_descriptions(void **state)
+{
+	(void)state;
+	static const char *const same[] = {
+		"--ndf ggx --sigma 0.3,0.1",
+		"--ndf ellipsoid --sigma 0.3,0.1",
+		"--ndf ellipsoid --params 'alpha_x=0.3;alpha_y=0.1'",
+		"--ndf ellipsoid --params 'A11=-0.6;A12=0;A13=0;A21=0;A22=0.2;A23=0;A31=0;A32=0;A33=2'",
+		"--ndf ellipsoid --sigma 0.1,0.3 --angle 90",
+		"--ndf ellipsoid --sigma 0.1,0.3 --params theta_z=-90",
+	};
+	stdfit("synth level.csv --ks 1 --ndf ggx --sigma 0.3,0.1");
+	for (size_t i = 0; i < sizeof same / sizeof *same; i++) {
+		char line[256];
+		snprintf(line, sizeof line, "eval level.csv --ks 1 --json %s", same[i]);
+		stdfit(line);
+		expect_code(0);
+		check_between(json_number("error_none"), 0, 1e-7, same[i]);
+	}
+	static const struct {
+		const char *params, *why;
+	} bad[] = {{"--params A11=1", "A11 to A33, all nine"},
+		   {"--sigma 0.1 --params 'theta_x=3;tilt_x=1'", "theta_x, theta_y and theta_z, or"},
+		   {"--sigma 0.1,0.2 --angle 5 --params theta_x=3", "theta_x, theta_y and theta_z, or"},
+		   {"--params tilt_x=1", "needs alpha_x and alpha_y, or sigma, or a matrix"},
+		   {"--sigma 0.1 --params tilt_z=1", "no such name"},
+		   {"--sigma 0.1 --gamma 3", "has no --gamma"},
+		   {"--sigma 0.1 --gamma 3 --params tilt_x=1", "ellipsoid has no gamma"},
+		   {"--params 'A11=1;A12=2;A13=3;A21=4;A22=5;A23=6;A31=7;A32=8;A33=9'", "does not take"}};
+	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+		char line[256];
+		snprintf(line, sizeof line, "synth no.csv --ks 1 --ndf ellipsoid %s", bad[i].params);
+		stdfit(line);
+		expect_error(2, bad[i].why);
+	}
+}
+
 /* Parameters by name: x of t-family, B and C of low. */
 static void params_are_those_of_ndf_and_sample(void **state)
 {
@@ -336,6 +429,7 @@ int main(void)
 		cmocka_unit_test(a_sphere_is_made_of_the_model),
 		cmocka_unit_test(an_axis_that_plays_no_part_stays_so),
 		cmocka_unit_test(what_is_no_table_of_nodes_is_told),
+		cmocka_unit_test(an_ellipsoid_is_a_model),
 	};
 	const struct CMUnitTest long_tests[] = {
 		cmocka_unit_test(P2_is_the_integral_of_P22_across),
@@ -343,6 +437,8 @@ int main(void)
 		cmocka_unit_test(nodes_of_GGX_are_nearly_GGX),
 		cmocka_unit_test(the_measurement_of_two_tables_is_of_them),
 		cmocka_unit_test(params_are_those_of_ndf_and_sample),
+		cmocka_unit_test(tilted_facets_are_in_the_tensor_file),
+		cmocka_unit_test(it_has_several_descriptions),
 	};
 	const int failed = cmocka_run_group_tests_name("given_ndf", tests, enter_directory, NULL);
 

@@ -210,8 +210,8 @@ const struct option_spec option_specs[] = {
 	{"gamma", 0, KIND_WORD, NDF | SAMPLE, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann)",
 	 AT(gamma_words), 0, 0},
 	{"params", 0, KIND_WORD, NDF | SAMPLE | MODEL | SOURCES, NOT_RECORDED, "P",
-	 "other parameters, name=value;...: x of t-family, B and C of low, D0 to D90 of pl, alpha_x, alpha_y, theta_x, "
-	 "theta_y, theta_z (degrees) of the ellipsoid",
+	 "other parameters, name=value;...: x of t-family, B and C of low, D0 to D90 of pl; of the ellipsoid tilt_x "
+	 "and tilt_y, or theta_x, theta_y, theta_z (degrees), or its matrix A11 to A33",
 	 AT(params), 0, 0},
 	{"nodes", 0, KIND_TEXT, NDF | SAMPLE | MODEL | SOURCES, NOT_RECORDED, "FILE.csv",
 	 "the nodes of pl: columns theta, degrees from 0 to 90, and D, or Dx and Dy along x and y", AT(nodes), 0, 0},

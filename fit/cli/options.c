@@ -73,7 +73,7 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "slope, P2 of the slope tan(theta) along phi and its moments, Lambda and G1 of the direction there,\n"
 		 "the shares of normals below theta and in (0, phi); with --theta-i the density of the normal among\n"
 		 "those visible, the weight of such a sample, and the CDFs of its slopes along and across that\n"
-		 "direction. NAME is an NDF, ellipsoid, or - for rows of standard input: a CSV with the columns ndf,\n"
+		 "direction. NAME is an NDF, or - for rows of standard input: a CSV with the columns ndf,\n"
 		 "sigma, sigma_y, gamma, params, lambda, theta, phi, theta_i, phi_i, as far as needed. With --from,\n"
 		 "the NDFs of a result table.\n"},
 	[COMMAND_SAMPLE] =
@@ -692,12 +692,13 @@ static int check_model(const struct options *options)
 static enum status make_ndf(const struct options *options, struct distribution *distribution, struct error *error)
 {
 	const struct fit_options *fit = &options->fit;
-	char sigma[CSV_NUMBER_SIZE], sigma_y[CSV_NUMBER_SIZE], gamma[CSV_NUMBER_SIZE];
+	char sigma[CSV_NUMBER_SIZE], sigma_y[CSV_NUMBER_SIZE], angle[CSV_NUMBER_SIZE], gamma[CSV_NUMBER_SIZE];
 	const bool specular = options_given(options, "ks");
 	const struct distribution_words words = {
 		.name = ndf_name(fit->ndf[0]),
 		.sigma = specular ? csv_number(sigma, fit->sigma) : "1",
 		.sigma_y = specular ? csv_number(sigma_y, fit->sigma_y) : "",
+		.angle = csv_number(angle, fit->angle),
 		.gamma = specular ? csv_number(gamma, fit->gamma) : "2",
 		.params = options->params,
 		.nodes = options->nodes,
@@ -705,9 +706,7 @@ static enum status make_ndf(const struct options *options, struct distribution *
 	enum status status = distribution_make(&words, distribution, error);
 	if (status != STATUS_OK)
 		return status;
-	if (!isnan(fit->angle))
-		status = ndf_turn(&distribution->ndf, fit->angle);
-	if (status == STATUS_OK && fit->lambda != LAMBDA_EXACT)
+	if (fit->lambda != LAMBDA_EXACT)
 		status = ndf_set_lambda_form(&distribution->ndf, fit->lambda);
 	if (status == STATUS_OK || status == STATUS_UNSUPPORTED)
 		return STATUS_OK;

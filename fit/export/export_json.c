@@ -105,9 +105,13 @@ static void write_parameters(FILE *file, const struct ndf *ndf)
 	fputs("\"parameters\": {", file);
 	for (int i = 0; ndf_param_at(ndf->class, i); i++)
 		write_parameter(file, i ? ", " : "", ndf_param_at(ndf->class, i)->name, ndf->param[i]);
-	if (ndf->sigma_x != ndf->sigma_y) {
+	if (ndf_is_anisotropic(ndf)) {
 		write_parameter(file, ", ", "sigma_y", ndf->sigma_y);
 		write_parameter(file, ", ", "angle", ndf->angle);
+	}
+	if (ndf_is_tilted(ndf)) {
+		write_parameter(file, ", ", "tilt_x", ndf->tilt_x);
+		write_parameter(file, ", ", "tilt_y", ndf->tilt_y);
 	}
 	fputs("}", file);
 }

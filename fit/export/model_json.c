@@ -83,7 +83,11 @@ static enum status read_axes(const json_t *parameters, struct ndf *ndf)
 {
 	const double sigma_y = number_of(json_object_get(parameters, "sigma_y"));
 	const enum status status = ndf_init(ndf, ndf->class, ndf->sigma_x, sigma_y, ndf->gamma);
-	return status != STATUS_OK ? status : ndf_turn(ndf, number_of(json_object_get(parameters, "angle")));
+	if (status != STATUS_OK || ndf_turn(ndf, number_of(json_object_get(parameters, "angle"))) != STATUS_OK)
+		return STATUS_DOMAIN;
+	return json_object_get(parameters, "tilt_x") ? ndf_tilt(ndf, number_of(json_object_get(parameters, "tilt_x")),
+								number_of(json_object_get(parameters, "tilt_y")))
+						     : STATUS_OK;
 }
 
 static enum status read_parameters(const json_t *json, const struct ndf_class *class, struct ndf *ndf)

@@ -280,16 +280,23 @@ static enum status refine(struct search *s, int level, struct objective *o, stru
 /* Up to so many scattered entries, the end of a search is without tables: it costs no more than the rest. */
 enum { EXACT_SAMPLES = 4096 };
 
+static bool has_few_entries(const struct search *s)
+{
+	const struct sample_set *full = &s->multiresolution->table[SEARCH_LEVELS - 1];
+
+	return full->scattered && full->n_samples <= EXACT_SAMPLES;
+}
+
 /* Refines the points on one level's table one after the other; the calling thread leads, the others of its team help
  * with the passes. */
 static enum status refine_in_turn(struct search *s, int level, struct space_point *point, int count,
 				  struct found *found)
 {
 	const struct sample_set *table = &s->multiresolution->table[level];
-	const bool few = level == SEARCH_LEVELS - 1 && table->scattered && table->n_samples <= EXACT_SAMPLES;
+	const bool exact = level == SEARCH_LEVELS - 1 && has_few_entries(s);
 	struct objective o;
 	enum status status = objective_init(&o, table, s->options, s->class, s->options->threads,
-					    few ? MASKING_FINE : MASKING_COARSE);
+					    exact ? MASKING_FINE : MASKING_COARSE);
 
 	if (status != STATUS_OK)
 		return status;
@@ -341,16 +348,16 @@ static enum status refine_all(struct search *s, int level, struct space_point *p
 }
 
 /* Where the search of such a table is stuck on the floor of a valley, leads it on: on the smallest sample, then on the
- * full table. */
+ * full table. Of few entries, noise makes the floor rugged. */
 static enum status follow_valley(struct search *s, struct space_point *best, struct found *found)
 {
-	const bool limited = found->limited;
+	const bool limited = found->limited, smooth = best->error <= NOISE_FREE;
 	const double stage_best = s->stage_best;
 	struct space_point point = *best;
 	struct objective o;
 	enum status status;
 
-	if (s->space.dims < 2 || best->error > NOISE_FREE || best->error < NEXT_TO_NOTHING)
+	if (s->space.dims < 2 || !(smooth || has_few_entries(s)) || best->error < NEXT_TO_NOTHING)
 		return STATUS_OK;
 	status = objective_init(&o, &s->multiresolution->table[0], s->options, s->class, 1, MASKING_COARSE);
 	if (status != STATUS_OK)

@@ -12,9 +12,6 @@ int distribution_source_check(const struct options *options)
 		return options_usage(options->command, "--phi-i means nothing without --theta-i");
 	if (!options->from && options->n_paths != 1)
 		return options_usage(options->command, "expected one NAME, or --from, found %d", options->n_paths);
-	/* Its weight has masking alone, of wo. */
-	if (!options->from && !strcmp(options->path[0], "ellipsoid") && options_given(options, "gaf"))
-		return options_usage(options->command, "--gaf means nothing for ellipsoid");
 	if (!options->from)
 		return -1;
 	if (options->n_paths)
