@@ -838,6 +838,47 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
 }
 
+/* The intervals of one result. */
+static enum status find_intervals(const struct multiresolution *multiresolution, const struct fit_options *asked,
+				  const struct ndf_class *class, double percent, struct fit_result *r)
+{
+	const double begin = search_clock();
+	const struct shape best = shape_of(&r->model);
+	struct fit_options options = *asked;
+
+	if (options.lambda == LAMBDA_INTEGER || options.lambda == LAMBDA_HALF_INTEGER)
+		options.gamma = r->model.ndf.gamma; /* the values between have no such form */
+	const enum status status =
+		interval_find(multiresolution, &options, class, &best, r->error, percent, r->interval, &r->evaluations);
+
+	/* A simpler model may have been as good. */
+	if (!cook_torrance_has_second(&r->model))
+		r->interval[INTERVAL_SIGMA2].n = r->interval[INTERVAL_GAMMA2].n = 0;
+	r->seconds += search_clock() - begin;
+	return status;
+}
+
+enum status fit_intervals(const struct fit_context *context, const struct measurement *measurement,
+			  const struct fit_options *options, double percent, struct fit_result *results,
+			  struct error *error)
+{
+	struct multiresolution multiresolution;
+	struct sample_set full;
+	enum status status = check_arguments(context, measurement, options, error);
+
+	if (status != STATUS_OK)
+		return status;
+	status = sample_set_init(&full, &context->geometry, measurement, options->threads);
+	if (status == STATUS_OK)
+		status = multiresolution_init(&multiresolution, &full);
+	if (status != STATUS_OK)
+		return error_set(error, status, "%s", status_str(status));
+	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++)
+		status = find_intervals(&multiresolution, options, options->ndf[n], percent, &results[n]);
+	multiresolution_free(&multiresolution);
+	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
+}
+
 enum status fit_estimate(const struct fit_context *context, const struct measurement *measurement,
 			 const struct fit_options *options, double *estimate, struct error *error)
 {
