@@ -280,16 +280,23 @@ static enum status refine(struct search *s, int level, struct objective *o, stru
 /* Up to so many scattered entries, the end of a search is without tables: it costs no more than the rest. */
 enum { EXACT_SAMPLES = 4096 };
 
+static bool has_few_entries(const struct search *s)
+{
+	const struct sample_set *full = &s->multiresolution->table[SEARCH_LEVELS - 1];
+
+	return full->scattered && full->n_samples <= EXACT_SAMPLES;
+}
+
 /* Refines the points on one level's table one after the other; the calling thread leads, the others of its team help
  * with the passes. */
 static enum status refine_in_turn(struct search *s, int level, struct space_point *point, int count,
 				  struct found *found)
 {
 	const struct sample_set *table = &s->multiresolution->table[level];
-	const bool few = level == SEARCH_LEVELS - 1 && table->scattered && table->n_samples <= EXACT_SAMPLES;
+	const bool exact = level == SEARCH_LEVELS - 1 && has_few_entries(s);
 	struct objective o;
 	enum status status = objective_init(&o, table, s->options, s->class, s->options->threads,
-					    few ? MASKING_FINE : MASKING_COARSE);
+					    exact ? MASKING_FINE : MASKING_COARSE);
 
 	if (status != STATUS_OK)
 		return status;
@@ -341,16 +348,16 @@ static enum status refine_all(struct search *s, int level, struct space_point *p
 }
 
 /* Where the search of such a table is stuck on the floor of a valley, leads it on: on the smallest sample, then on the
- * full table. */
+ * full table. Of few entries, noise makes the floor rugged. */
 static enum status follow_valley(struct search *s, struct space_point *best, struct found *found)
 {
-	const bool limited = found->limited;
+	const bool limited = found->limited, smooth = best->error <= NOISE_FREE;
 	const double stage_best = s->stage_best;
 	struct space_point point = *best;
 	struct objective o;
 	enum status status;
 
-	if (s->space.dims < 2 || best->error > NOISE_FREE || best->error < NEXT_TO_NOTHING)
+	if (s->space.dims < 2 || !(smooth || has_few_entries(s)) || best->error < NEXT_TO_NOTHING)
 		return STATUS_OK;
 	status = objective_init(&o, &s->multiresolution->table[0], s->options, s->class, 1, MASKING_COARSE);
 	if (status != STATUS_OK)
@@ -598,6 +605,31 @@ enum status search_estimate(const struct multiresolution *multiresolution, const
 	free(point);
 	if (status != STATUS_OK)
 		return status;
+	return cancelled(&s) ? STATUS_INTERRUPTED : status;
+}
+
+enum status search_minima(const struct multiresolution *multiresolution, const struct fit_options *options,
+			  const struct ndf_class *class, int level, double margin, struct space_point minimum[],
+			  int n_max, int *n, struct scan_minima *scan_minima, _Atomic long *evaluations)
+{
+	struct search s = new_search(multiresolution, options, class);
+	struct space_point point[FIRST_POINTS_MAX] = {{.error = 0}};
+	const struct stage last = {.max_points = n_max, .margin = margin};
+	struct found found = {.starts = 0};
+	enum status status = STATUS_OK;
+	int count = first_points(&s, point, scan_minima, &status);
+
+	for (int l = 0; l <= level && status == STATUS_OK; l++) {
+		/* What the sample before is wrong about a difference of errors comes on top. */
+		const struct stage stage = {.max_points = stages[l].max_points, .margin = margin + stages[l].margin};
+
+		if (l > 0)
+			count = thin_out(&s, point, count, &stage);
+		status = refine_all(&s, l, point, count, &found);
+	}
+	*n = status == STATUS_OK ? thin_out(&s, point, count, &last) : 0;
+	memcpy(minimum, point, (size_t)*n * sizeof *minimum);
+	*evaluations += s.evaluations;
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }
 
