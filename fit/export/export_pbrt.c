@@ -2,9 +2,9 @@
 /* pbrt-v4: `mix` of `diffuse` and `conductor`, of which it takes the second with probability `amount`: the sum in
  * expectation,
  *     kd = (1 - w) reflectance,  ks = w.
- * The conductor is F D G / (4 cos_i cos_o) of GGX with the height-correlated G. Its eta and k are spectra: flat for a gray
- * ks; for a coloured one, of which w is the largest, they are those of three bands [spectrum_bands()], of which each
- * reflects at normal incidence what it has of ks F. Towards grazing incidence all reflect w. */
+ * The conductor is F D G / (4 cos_i cos_o) of GGX with the height-correlated G. Its eta and k are spectra: flat for a
+ * gray ks; for a coloured one, of which w is the largest, they are those of three bands [spectrum_bands()], of which
+ * each reflects at normal incidence what it has of ks F. Towards grazing incidence all reflect w. */
 #include "fit/export/export_format.h"
 #include "fit/export/substitute.h"
 #include "fit/results/csv_number.h"
