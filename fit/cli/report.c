@@ -256,10 +256,14 @@ static void print_status(FILE *file, const char *status, bool narrow)
 static void print_axes(FILE *file, char *const *row, bool narrow)
 {
 	const double x = result_number(row, RESULT_SIGMA_X), y = result_number(row, RESULT_SIGMA_Y);
-	char text[SHOWN_SIZE];
+	double tilt_x, tilt_y;
+	char text[SHOWN_SIZE], tilt[SHOWN_SIZE] = "";
 	if (isnan(x) || isnan(y))
 		return;
-	snprintf(text, sizeof text, "(sigma_x %.5g, sigma_y %.5g, angle %.4g)", x, y, result_number(row, RESULT_ANGLE));
+	if (result_param(row[RESULT_PARAMS], "tilt_x", &tilt_x) && result_param(row[RESULT_PARAMS], "tilt_y", &tilt_y))
+		snprintf(tilt, sizeof tilt, ", tilt %.4g,%.4g", tilt_x, tilt_y);
+	snprintf(text, sizeof text, "(sigma_x %.5g, sigma_y %.5g, angle %.4g%.40s)", x, y,
+		 result_number(row, RESULT_ANGLE), tilt);
 	print_remark(file, text, narrow);
 }
 

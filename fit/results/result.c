@@ -304,6 +304,10 @@ static void set_model(struct row *row, const struct fit_options *options, const 
 		set_nodes(options, &model->ndf, params);
 	else
 		set_ndf(row, &model->ndf, params);
+	if (options->anisotropic && ndf_has_tilt(model->ndf.class)) {
+		add_param(params, "tilt_x", model->ndf.tilt_x);
+		add_param(params, "tilt_y", model->ndf.tilt_y);
+	}
 	if (fresnel_has_ior(model->fresnel))
 		set_number(row, RESULT_IOR, model->n);
 	if (model->fresnel == FRESNEL_CONDUCTOR)
@@ -677,6 +681,11 @@ static enum status result_ndf(char *const *row, const struct ndf_class *class, s
 	if (ndf_init_params(ndf, class, value) != STATUS_OK)
 		return STATUS_DOMAIN;
 	if (*row[RESULT_SIGMA_X] && result_axes(row, ndf, wrong) != STATUS_OK)
+		return STATUS_DOMAIN;
+	double tilt_x, tilt_y;
+	*wrong = RESULT_PARAMS;
+	if (ndf_has_tilt(class) && result_param(row[RESULT_PARAMS], "tilt_x", &tilt_x) &&
+	    !(result_param(row[RESULT_PARAMS], "tilt_y", &tilt_y) && ndf_tilt(ndf, tilt_x, tilt_y) == STATUS_OK))
 		return STATUS_DOMAIN;
 	*wrong = RESULT_LAMBDA;
 	if (lambda_form_find(row[RESULT_LAMBDA], &form) != STATUS_OK)

@@ -212,8 +212,9 @@ struct nesting {
 static double gamma_of_nested(const struct ndf_class *class, int n)
 {
 	struct ndf ndf, plain;
-	const bool within = ndf_has_gamma(class) && ndf_init(&ndf, class, 1, 1, nested_gamma[n]) == STATUS_OK &&
-			    ndf_plain(&ndf, &plain) && plain.class == ndf_find(nested_name[n]) && plain.sigma_x == 1;
+	const bool within = (ndf_has_gamma(class) || ndf_has_tilt(class)) &&
+			    ndf_init(&ndf, class, 1, 1, nested_gamma[n]) == STATUS_OK && ndf_plain(&ndf, &plain) &&
+			    plain.class == ndf_find(nested_name[n]) && plain.sigma_x == 1;
 
 	return within ? nested_gamma[n] : NAN;
 }
@@ -552,8 +553,12 @@ static enum status fit_anisotropic(const struct run *run, const struct ndf_class
 	start[0] = shape_of(&isotropic.model);
 	if (has_sparse_lambda(run, class))
 		options.gamma = start[0].gamma; /* the other values have been fitted */
-	count += anisotropic_starts(&run->multiresolution, &options, class, &start[0], start + count,
-				    AXES_STARTS - count, &evaluations, &status);
+	if (ndf_has_tilt(class))
+		count += tilted_starts(&run->multiresolution, &options, class, start, count, start + count,
+				       AXES_STARTS - count, &evaluations, &status);
+	else
+		count += anisotropic_starts(&run->multiresolution, &options, class, &start[0], start + count,
+					    AXES_STARTS - count, &evaluations, &status);
 	if (status == STATUS_OK)
 		status = search_from(&run->multiresolution, &options, class, start, count, &start[0], INFINITY, &found);
 	if (status == STATUS_OK)
@@ -696,6 +701,21 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 	return STATUS_OK;
 }
 
+/* What tilts is GGX where nothing tells the azimuth. */
+static enum status fit_level(const struct run *run, const struct ndf_class *class, struct nested *nested,
+			     struct fit_result *r)
+{
+	const struct ndf_class *ggx = ndf_find("ggx");
+	enum status status = fit_class(run, ggx, nested, r);
+
+	if (status != STATUS_OK)
+		return status;
+	run->minima[index_of(class)] = run->minima[index_of(ggx)];
+	const struct ndf ndf = r->model.ndf;
+
+	return ndf_init(&r->model.ndf, class, ndf.sigma_x, ndf.sigma_y, ndf.gamma);
+}
+
 static enum status fit_anew(const struct run *run, const struct ndf_class *class, struct nested *nested,
 			    struct fit_result *r)
 {
@@ -708,6 +728,8 @@ static enum status fit_anew(const struct run *run, const struct ndf_class *class
 		return fit_free_form(run, nested, r);
 	if (run->options->anisotropic && isnan(run->options->sigma_y))
 		return fit_anisotropic(run, class, nested, r);
+	if (ndf_has_tilt(class) && !run->options->anisotropic && !run->options->algorithm)
+		return fit_level(run, class, nested, r);
 	if (nesting.any)
 		return fit_with_nested(run, class, &nesting, nested, r);
 	if (has_sparse_lambda(run, class))
