@@ -887,6 +887,8 @@ static enum status find_intervals(const struct multiresolution *multiresolution,
 	/* A simpler model may have been as good. */
 	if (!cook_torrance_has_second(&r->model))
 		r->interval[INTERVAL_SIGMA2].n = r->interval[INTERVAL_GAMMA2].n = 0;
+	if (best.stretch == 0)
+		r->interval[INTERVAL_ANGLE].n = 0;
 	r->seconds += search_clock() - begin;
 	return status;
 }
