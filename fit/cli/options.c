@@ -294,6 +294,7 @@ struct options options_default(enum command command)
 		.fit = fit_options_default(),
 		.command = command,
 		.within = NAN,
+		.intervals = NAN,
 		.n_phi_d = 180,
 		.theta_i = NAN,
 		.count = 1000,
@@ -508,6 +509,8 @@ int options_check_fit(const struct options *options)
 	for (size_t i = 0; i < sizeof shape / sizeof *shape; i++)
 		if (!fit->specular && options_given(options, shape[i]))
 			return options_usage(options->command, "--%s means nothing with --no-specular", shape[i]);
+	if (!fit->specular && !isnan(options->intervals))
+		return options_usage(options->command, "--intervals means nothing with --no-specular");
 	if (!fit->anisotropic && (!isnan(fit->sigma_y) || !isnan(fit->angle)))
 		return options_usage(options->command, "--%s needs --anisotropic",
 				     isnan(fit->angle) ? "sigma SX,SY" : "angle");

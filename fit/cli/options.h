@@ -21,6 +21,7 @@ struct options {
 		weight[WEIGHT_COUNT]; /* of `fit`, which fits under each of them; fit.criterion.weight is the first */
 	int n_weights;                /* 0: fit.criterion.weight is the only one */
 	enum command command;
+	bool both_bins;         /* what is fitted with one is fitted with the other, too, and the difference told */
 	enum quantity quantity; /* of a file that may have another than it says */
 	enum gamut gamut;
 	const char *output;      /* NULL: standard output */
@@ -28,7 +29,8 @@ struct options {
 	const char *trace;       /* a CSV of the course of each search; NULL: none */
 	struct shard shard;      /* .n = 0: all files */
 	bool json, quiet, resume, recursive, readable;
-	double within; /* percent; NaN: every NDF as it is */
+	double within;    /* percent; NaN: every NDF as it is */
+	double intervals; /* percent; NaN: none are sought */
 	/* A model, for eval and synth; its sigma, gamma and ior are those of `fit`. */
 	double kd[3], ks[3], k;
 	double f82[F82_PARTS][3], kg[3], ks2[3], sigma2, gamma2;

@@ -74,7 +74,9 @@ enum status objective_init(struct objective *o, const struct sample_set *table, 
 	}
 	o->row = malloc((size_t)o->terms.n * sizeof *o->row);
 	o->sums = malloc((size_t)table->n_blocks * sizeof *o->sums);
-	o->is_exact = table->scattered && density == MASKING_FINE && table->n_samples <= OBJECTIVE_EXACT_SAMPLES;
+	/* Of tilted facets G1 is no function of one number. */
+	o->is_exact = table->scattered && ((density == MASKING_FINE && table->n_samples <= OBJECTIVE_EXACT_SAMPLES) ||
+					   (options->anisotropic && ndf_has_tilt(class)));
 	if (!complete || !o->row || !o->sums || init_tables(o, density) != STATUS_OK) {
 		objective_free(o);
 		return STATUS_NO_MEMORY;
@@ -120,6 +122,8 @@ struct shape shape_of(const struct cook_torrance *model)
 			      .k = model->k,
 			      .second_sigma = model->second.sigma_x,
 			      .second_gamma = model->second.gamma,
+			      .tilt_x = ndf->tilt_x,
+			      .tilt_y = ndf->tilt_y,
 			      .grazing = model->grazing};
 
 	if (ndf->sigma_x != ndf->sigma_y) {
@@ -138,6 +142,8 @@ enum status shape_ndf(const struct shape *shape, const struct ndf_class *class, 
 
 	if (status == STATUS_OK && shape->stretch != 0)
 		status = ndf_turn(ndf, shape->angle);
+	if (status == STATUS_OK && (shape->tilt_x != 0 || shape->tilt_y != 0))
+		status = ndf_tilt(ndf, shape->tilt_x, shape->tilt_y);
 	if (status == STATUS_OK && lambda != LAMBDA_EXACT)
 		status = ndf_set_lambda_form(ndf, lambda);
 	return status == STATUS_UNSUPPORTED ? STATUS_OK : status;
@@ -195,8 +201,9 @@ static enum status tabulate_lobe(struct objective *o, int which, const struct sh
 	const bool same_gamma = shape->gamma == have->gamma || !ndf_has_gamma(o->class);
 	struct ndf ndf;
 
-	if (lobe->given || (shape->sigma == have->sigma && same_gamma && shape->stretch == have->stretch &&
-			    shape->angle == have->angle))
+	if (lobe->given ||
+	    (shape->sigma == have->sigma && same_gamma && shape->stretch == have->stretch &&
+	     shape->angle == have->angle && shape->tilt_x == have->tilt_x && shape->tilt_y == have->tilt_y))
 		return STATUS_OK;
 	const enum status status = shape_ndf(shape, o->class, o->options->lambda, &ndf);
 

@@ -13,6 +13,7 @@ struct shape {
 	double sigma, gamma, ior, k;       /* sigma: sqrt(sigma_x sigma_y) where they differ */
 	double stretch;                    /* ln(sigma_x/sigma_y); 0: isotropic */
 	double angle;                      /* of the axis of sigma_x, degrees */
+	double tilt_x, tilt_y;             /* ndf_tilt() */
 	double second_sigma, second_gamma; /* of the second lobe */
 	double grazing;                    /* exponent of the grazing term */
 };
@@ -86,9 +87,9 @@ struct objective {
 	struct masking grazing;           /* the grazing term's function of a direction, */
 	double grazing_exponent;          /* for this exponent */
 	struct cook_torrance optics;      /* F of the shape, and G */
-	bool is_exact;                    /* scattered entries, few enough to have the terms at each without tables */
-	float *term[KERNEL_TERMS];        /* a float a sample; [0] is not used: it is the weight */
-	float (*row)[MERL_ROWS];          /* one a term */
+	bool is_exact;             /* scattered entries whose terms are had without tables: few, or of tilted facets */
+	float *term[KERNEL_TERMS]; /* a float a sample; [0] is not used: it is the weight */
+	float (*row)[MERL_ROWS];   /* one a term */
 	struct kernel_sums (*sums)[MERL_CHANNELS]; /* one set a block */
 	long passes;                               /* over the table, so far */
 	struct linear start;                       /* where the next inner solve begins: the last one's end */

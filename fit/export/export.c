@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "data_readers/text_quote.h"
-#include "fit/error/entries.h"
 #include "fit/error/model_table.h"
-#include "fit/error/sample_set.h"
 #include "fit/export/export_format.h"
 #include "fit/results/csv_number.h"
 
@@ -67,27 +65,13 @@ bool export_shows_model(const struct export *export)
 	return !targets[export->format]->shows;
 }
 
-enum status export_shown_table(const struct export *export, struct measurement *measurement)
+void export_shown_f(const void *export, struct vec3 wi, struct vec3 wo, double f[3])
 {
-	const int n_phi_d = 180;
-	const struct entries entries = entries_make(export->source.fit->criterion.bins, n_phi_d);
-	const enum status status = measurement_alloc(measurement, n_phi_d);
-	if (status != STATUS_OK)
-		return status;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(export->source.fit->threads)
-	for (int i = 0; i < MERL_THETA_H; i++)
-		for (int jk = 0; jk < MERL_THETA_D * n_phi_d; jk++) {
-			const int j = jk / n_phi_d, k = jk % n_phi_d;
-			struct vec3 wi, wo;
-			double f[3];
-			entries_dirs(&entries, i, j, k, &wi, &wo);
-			if (!entry_in_range(wi, wo, 0))
-				continue;
-			targets[export->format]->shows(&export->model, wi, wo, f);
-			for (int c = 0; c < MERL_CHANNELS; c++)
-				measurement->value[c][measurement_at(n_phi_d, i, j, k)] = (float)f[c];
-		}
-	return STATUS_OK;
+	const struct export *shown = export;
+	if (export_shows_model(shown))
+		cook_torrance_f(&shown->model, wi, wo, f);
+	else
+		targets[shown->format]->shows(shown, wi, wo, f);
 }
 
 bool export_has_axes(const struct cook_torrance *model)

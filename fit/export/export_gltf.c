@@ -50,34 +50,15 @@ static void set_material(struct cook_torrance *model, const struct gltf_material
 }
 
 /* What a viewer makes of the model. */
-static void gltf_f(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo, double f[3])
+static void gltf_f(const struct export *export, struct vec3 wi, struct vec3 wo, double f[3])
 {
-	const struct gltf_material material = material_of(model);
+	const struct gltf_material material = material_of(&export->model);
 	gltf_material_f(&material, wi, wo, f);
 }
 
 static bool is_gray(const double x[3])
 {
 	return x[0] == x[1] && x[1] == x[2];
-}
-
-/* The errors of the model and of what a viewer shows, under the weight of the fit first. */
-static enum status report_cost(struct export *export, const struct measurement *measurement,
-			       const struct gltf_material *material, struct error *error)
-{
-	const struct fit_options *fit = export->source.fit;
-	struct fit_metrics before;
-	double after[WEIGHT_COUNT];
-	const enum status status = fit_eval(measurement, export->source.model, fit, &before, error);
-	if (status != STATUS_OK)
-		return status;
-	for (enum weight weight = 0; weight < WEIGHT_COUNT; weight++) {
-		struct criterion criterion = fit->criterion;
-		criterion.weight = weight;
-		after[weight] = gltf_material_error(measurement, &criterion, fit->threads, material);
-	}
-	substitute_cost(export, before.error, after);
-	return STATUS_OK;
 }
 
 /* Fits the material in its own terms, from the model on. */
@@ -94,7 +75,7 @@ static enum status fit_material(struct export *export, const struct measurement 
 	if (material.specular)
 		set_material(&export->model, &material);
 	export->substitute = true;
-	return report_cost(export, measurement, &material, error);
+	return substitute_report(export, measurement, error);
 }
 
 static enum status gltf_prepare(struct export *export, struct error *error)
@@ -110,9 +91,7 @@ static enum status gltf_prepare(struct export *export, struct error *error)
 		return export_as_it_is(export, "the model itself");
 	if (!export->substitute)
 		snprintf(export->why, sizeof export->why, "approximate: glTF has no sum of two lobes");
-	const size_t used = strlen(export->why);
-	snprintf(export->why + used, sizeof export->why - used,
-		 "; its lobe takes what it reflects from the diffuse part, and was fitted like that");
+	substitute_add_why(export, "its lobe takes what it reflects from the diffuse part, and was fitted like that");
 	const struct measurement *measurement = substitute_measurement(&export->source, &own);
 	status = measurement ? fit_material(export, measurement, error)
 			     : error_set(error, STATUS_NO_MEMORY, "out of memory");

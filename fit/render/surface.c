@@ -129,11 +129,12 @@ static double add_lobe(const struct surface *s, const struct view *view, int l, 
 	const struct surface_lobe *lobe = &s->lobe[l];
 	const double *ks = l ? model->ks_second : model->ks;
 	const double D = ndf_D(lobe->ndf, half.m);
-	if (!s->measured && model->fresnel != FRESNEL_F82) {
+	const bool given = s->measured || s->other;
+	if (!given && model->fresnel != FRESNEL_F82) {
 		const double value = facets_f(s, view, l, wi, cook_torrance_F(model, 0, half.cos_d) * D);
 		for (int c = 0; c < 3; c++)
 			f[c] += ks[c] * value;
-	} else if (!s->measured) {
+	} else if (!given) {
 		const double value = facets_f(s, view, l, wi, D);
 		for (int c = 0; c < 3; c++)
 			f[c] += ks[c] * cook_torrance_F(model, c, half.cos_d) * value;
@@ -161,7 +162,9 @@ double surface_f(const struct surface *s, const struct view *view, struct vec3 w
 	if (wi.z < SURFACE_HORIZON)
 		return 0;
 	const struct half half = half_of(wi, view->wo);
-	if (s->measured)
+	if (s->other)
+		s->other(s->context, wi, view->wo, f);
+	else if (s->measured)
 		measured_f(s->measured, wi, view->wo, f);
 	else
 		diffuse_f(s, view, wi, half, f);

@@ -62,12 +62,12 @@ static double evaluate(unsigned dims, const double *x, double *gradient, void *d
 
 double local_spacing(enum coordinate coordinate)
 {
-	static const double spacing[] = {[COORDINATE_SIGMA] = 0.35,       [COORDINATE_GAMMA] = 1.0,
-					 [COORDINATE_IOR] = 0.1,          [COORDINATE_K] = 0.15,
-					 [COORDINATE_STRETCH_COS] = 0.35, [COORDINATE_STRETCH_SIN] = 0.35,
-					 [COORDINATE_STRETCH] = 0.35,     [COORDINATE_ANGLE] = 15,
-					 [COORDINATE_GRAZING] = 0.4,      [COORDINATE_SECOND_SIGMA] = 0.35,
-					 [COORDINATE_SECOND_GAMMA] = 1.0};
+	static const double spacing[] = {
+		[COORDINATE_SIGMA] = 0.35,      [COORDINATE_GAMMA] = 1.0,        [COORDINATE_IOR] = 0.1,
+		[COORDINATE_K] = 0.15,          [COORDINATE_STRETCH_COS] = 0.35, [COORDINATE_STRETCH_SIN] = 0.35,
+		[COORDINATE_STRETCH] = 0.35,    [COORDINATE_ANGLE] = 15,         [COORDINATE_TILT_X] = 0.35,
+		[COORDINATE_TILT_Y] = 0.35,     [COORDINATE_GRAZING] = 0.4,      [COORDINATE_SECOND_SIGMA] = 0.35,
+		[COORDINATE_SECOND_GAMMA] = 1.0};
 
 	return spacing[coordinate];
 }

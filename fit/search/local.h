@@ -16,6 +16,9 @@ struct local_settings {
 	double enough; /* an error at which it may stop; 0: none */
 };
 
+/* local_spacing - about the spacing of the scan's grid along a coordinate. */
+double local_spacing(enum coordinate coordinate);
+
 /* Called at every evaluation, by the thread that searches; NULL: nobody. */
 typedef void local_report(void *user, const struct shape *shape, const struct linear *linear);
 

@@ -608,6 +608,31 @@ enum status search_estimate(const struct multiresolution *multiresolution, const
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }
 
+enum status search_minima(const struct multiresolution *multiresolution, const struct fit_options *options,
+			  const struct ndf_class *class, int level, double margin, struct space_point minimum[],
+			  int n_max, int *n, struct scan_minima *scan_minima, _Atomic long *evaluations)
+{
+	struct search s = new_search(multiresolution, options, class);
+	struct space_point point[FIRST_POINTS_MAX] = {{.error = 0}};
+	const struct stage last = {.max_points = n_max, .margin = margin};
+	struct found found = {.starts = 0};
+	enum status status = STATUS_OK;
+	int count = first_points(&s, point, scan_minima, &status);
+
+	for (int l = 0; l <= level && status == STATUS_OK; l++) {
+		/* What the sample before is wrong about a difference of errors comes on top. */
+		const struct stage stage = {.max_points = stages[l].max_points, .margin = margin + stages[l].margin};
+
+		if (l > 0)
+			count = thin_out(&s, point, count, &stage);
+		status = refine_all(&s, l, point, count, &found);
+	}
+	*n = status == STATUS_OK ? thin_out(&s, point, count, &last) : 0;
+	memcpy(minimum, point, (size_t)*n * sizeof *minimum);
+	*evaluations += s.evaluations;
+	return cancelled(&s) ? STATUS_INTERRUPTED : status;
+}
+
 enum status search_from(const struct multiresolution *multiresolution, const struct fit_options *options,
 			const struct ndf_class *class, const struct shape given[], int n_given,
 			const struct shape *known, double error, struct found *found)

@@ -47,6 +47,15 @@ MUST_CHECK enum status search_run(const struct multiresolution *multiresolution,
 MUST_CHECK enum status search_estimate(const struct multiresolution *multiresolution, const struct fit_options *options,
 				       const struct ndf_class *class, double *error);
 
+/* search_minima - the local minima that the scan leads to, refined on the samples up to `level`, best first: at most n_max
+ * of those whose E is within `margin` (relative) of the least; and what the scan has shown. Counts the shapes that it
+ * evaluates in *evaluations.
+ * Errors:  as search_run() */
+MUST_CHECK enum status search_minima(const struct multiresolution *multiresolution, const struct fit_options *options,
+				     const struct ndf_class *class, int level, double margin,
+				     struct space_point point[], int n_max, int *n, struct scan_minima *scan,
+				     _Atomic long *evaluations);
+
 /* search_from - goes down from the given shapes only (at most SEARCH_GIVEN), against a shape that is known already and
  * its error: what leads there, or to nothing better, is given up early. If all is, found->linear.error is INFINITY. Of two
  * lobes the options' random starts come after that.

@@ -21,6 +21,8 @@ enum coordinate {
 	COORDINATE_STRETCH_SIN, /* l sin 2a: isotropy is a point like others, and no angle the end of a range */
 	COORDINATE_STRETCH,     /* l itself, where a is fixed */
 	COORDINATE_ANGLE,       /* a, where l is fixed */
+	COORDINATE_TILT_X,      /* asinh(tilt_x/0.05): tilts of sharp lobes are small */
+	COORDINATE_TILT_Y,      /* likewise */
 };
 
 /* struct axis - values of one parameter, ascending: points of a grid. */
@@ -62,7 +64,7 @@ double space_sigma_scale(const struct space *space, double gamma);
 /* space_x - dimension d's coordinate of a value of its parameter; space_value - the reverse. */
 double space_x(const struct space *space, int d, double value);
 double space_value(const struct space *space, int d, double x);
-/* space_is_of_axes - whether dimension d is one of the axes' coordinates but COORDINATE_ANGLE. */
+/* space_is_of_axes - whether dimension d is one of the axes' coordinates but COORDINATE_ANGLE, or of the tilt. */
 bool space_is_of_axes(const struct space *space, int d);
 /* space_fix - takes dimension d out: its parameter has this value from now on, gamma = inf included. */
 void space_fix(struct space *space, int d, double value);

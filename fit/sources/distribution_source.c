@@ -56,6 +56,7 @@ static void move_model(const struct source_model *model, struct described *item)
 	item->gaf = model->model.gaf;
 	item->words = (struct distribution_words){.name = item->distribution.name,
 						  .sigma = item->sigma,
+						  .sigma_y = item->sigma_y,
 						  .gamma = item->gamma,
 						  .params = item->params,
 						  .lambda = lambda_form_name(ndf->lambda_form)};
@@ -71,6 +72,13 @@ static void move_model(const struct source_model *model, struct described *item)
 		else
 			snprintf(item->params + used, sizeof item->params - used, "%s%s=%s", used ? ";" : "",
 				 param->name, number);
+	}
+	if (ndf_is_anisotropic(ndf) && !ndf_is_tabulated(ndf->class))
+		csv_number(item->sigma_y, ndf->sigma_y);
+	if (ndf_is_tilted(ndf)) {
+		char x[CSV_NUMBER_SIZE], y[CSV_NUMBER_SIZE];
+		snprintf(item->params, sizeof item->params, "tilt_x=%s;tilt_y=%s", csv_number(x, ndf->tilt_x),
+			 csv_number(y, ndf->tilt_y));
 	}
 }
 
