@@ -220,7 +220,7 @@ approximation() {
 			place $column $((top + 1)) "σ=$sigma, exact" <"$work/exact"
 			place $column $((top + 2)) rational <"$work/rational"
 			difference rational exact 0.02 >"$work/difference"
-			place $column $((top + 3)) "$rmse %, white: 2 %" <"$work/difference"
+			place $column $((top + 3)) "$rmse %" <"$work/difference"
 			worst=$(awk -v a="$worst" -v b="$rmse" 'BEGIN { print (a > b ? a : b) }')
 		done
 		top=$((top + 3))
@@ -243,7 +243,7 @@ beckmann() {
 			rmse=$(rmse std limit)
 			place $column $((top + 1)) "σ=$sigma" <"$work/std"
 			difference std limit 0.05 >"$work/difference"
-			place $column $((top + 2)) "$rmse %, white: 5 %" <"$work/difference"
+			place $column $((top + 2)) "$rmse %" <"$work/difference"
 			[ $gamma != 40 ] || found 'S3 10' "RMSE of a sphere of gamma 40 and sigma $sigma against Beckmann in % of its mean" \
 				"$rmse" 'not visible'
 		done
