@@ -187,7 +187,7 @@ bench: setup
 	@$(MAKE) --no-print-directory $(BUILD)/tests/bench
 	$(BUILD)/tests/bench $(BUILD)/bench.csv
 
-# The STD paper's figures; Fig. 11 of the fits in FITS=FILE.csv, or of the files in MERL=DIR, or of synthetic tables.
+# The figures of the five papers; Fig. 11 of the STD paper of the fits in FITS=FILE.csv, or of the files in MERL=DIR, or of synthetic tables.
 figures: setup
 	@$(MAKE) --no-print-directory all $(BUILD)/tests/figures
 	@FITS='$(FITS)' MERL='$(MERL)' scripts/figures.sh $(BUILD)

@@ -34,7 +34,7 @@ struct row {
 	char what[240]; /* the first finding */
 };
 
-enum { ROWS_MAX = 256 };
+enum { ROWS_MAX = 512 };
 static struct row rows[ROWS_MAX];
 static int n_rows;
 static char at_hand[160]; /* the parameters at hand */
