@@ -271,7 +271,7 @@ check_links() {
 	done <"$work/links"
 }
 
-# Every `make TARGET` and scripts/FILE that page $1 names is there.
+# Every `make TARGET`, scripts/FILE and case of a test, `test_FILE: CASE`, that page $1 names is there.
 check_names() {
 	grep -o -E '(`|^ *)make [a-z][a-z-]+' "$1" | sed 's/.*make //' | sort -u >"$work/names" || :
 	while read -r name; do
@@ -281,6 +281,10 @@ check_names() {
 		sort -u >"$work/names" || :
 	while read -r name; do
 		[ -e "$name" ] || fault "$1: no file $name"
+	done <"$work/names"
+	grep -o '`test_[a-z_]*: [A-Za-z0-9_]*' "$1" | tr -d '`:' | sort -u >"$work/names" || :
+	while read -r file name; do
+		grep -q -s -w -e "$name" "tests/$file.c" || fault "$1: no case $name in tests/$file.c"
 	done <"$work/names"
 }
 

@@ -136,6 +136,12 @@ static void wrong_usage_is_refused(void **state)
 		{"a.binary --within 5%%", "for --within"},
 		{"a.binary --no-diffuse --no-specular", "leave nothing to fit"},
 		{"a.binary --no-specular --sigma 0.1", "--sigma means nothing"},
+		{"a.binary --no-specular --gaf correlated", "--gaf means nothing with --no-specular"},
+		{"a.binary --no-specular --fresnel schlick", "--fresnel means nothing with --no-specular"},
+		{"a.binary --no-specular --lambda 2f1", "--lambda means nothing with --no-specular"},
+		{"a.binary --no-specular --starts 3", "--starts means nothing with --no-specular"},
+		{"a.binary --ndf ggx,beckmann --lambda rational", "--lambda means nothing for these NDFs"},
+		{"a.binary --gaf v-groove --lambda rational", "--lambda means nothing with --gaf v-groove"},
 		{"a.binary --fresnel none --ior 1.5", "--ior means nothing"},
 		{"a.binary --ndf ggx,beckmann --gamma 3", "--gamma means nothing"},
 		{"a.binary --resume", "--resume needs -o"},
@@ -148,6 +154,8 @@ static void wrong_usage_is_refused(void **state)
 		{"eval a.binary --ks 1", "--ks needs --sigma"},
 		{"eval a.binary --ks 1 --sigma 0.1", "--ndf std needs --gamma"},
 		{"eval a.binary --ks 1 --sigma 0.1 --ndf ggx --gamma 3", "--ndf ggx has no --gamma"},
+		{"eval a.binary --kd 1 --lambda rational", "--lambda means nothing without --ks"},
+		{"eval a.binary --ks 1 --sigma 0.1 --ndf ggx --lambda rational", "--lambda means nothing for"},
 		{"eval a.binary --kd 1,2", "bad value '1,2' for --kd"},
 		{"eval a.binary --kd 1,2,3,4", "for --kd"},
 		{"eval a.binary --kd 1,,3", "for --kd"},
@@ -884,6 +892,47 @@ static void weights_stand_side_by_side(void **state)
 	expect_error(2, "--trace takes one --weight");
 }
 
+/* The row is that of the nodes; the other fit is told to the last digit, and what is certain besides. */
+static void how_certain_a_fit_is_stands_in_its_row(void **state)
+{
+	static const enum result_column told[] = {RESULT_ERROR, RESULT_KD_R, RESULT_KS_B, RESULT_SIGMA};
+	double value;
+	(void)state;
+	shell("\"$STDFIT\" synth c.binary --ndf ggx --sigma 0.2 --kd 0.3 --ks 0.5 --noise 0.1; for b in node centre "
+	      "both; do "
+	      "\"$STDFIT\" c.binary --ndf ggx --ior 1.5 --max-theta 20 -q --bins $b --intervals 5% -o c-$b.csv; done");
+	expect_code(0);
+	struct csv_table node = read_table("c-node.csv"), centre = read_table("c-centre.csv"),
+			 both = read_table("c-both.csv");
+	char *const *row = both.row[0];
+	assert_string_equal(node.row[0][RESULT_OTHER_BINS], "");
+	for (enum result_column c = 0; c < RESULT_COLUMNS; c++)
+		if (c != RESULT_SECONDS && c != RESULT_EVALUATIONS && c != RESULT_OPTIONS && c != RESULT_OTHER_BINS)
+			assert_string_equal(row[c], node.row[0][c]);
+	for (size_t t = 0; t < sizeof told / sizeof *told; t++) {
+		assert_true(result_param(row[RESULT_OTHER_BINS], result_columns[told[t]].name, &value));
+		assert_true(value == result_number(centre.row[0], told[t]));
+		assert_true(value != result_number(row, told[t]));
+	}
+	assert_true(result_number(row, RESULT_SIGMA_LO) < result_number(row, RESULT_SIGMA));
+	assert_true(result_number(row, RESULT_SIGMA_HI) > result_number(row, RESULT_SIGMA));
+	assert_string_equal(row[RESULT_IOR_LO], "");
+	assert_non_null(strstr(row[RESULT_OPTIONS], " bins=both "));
+	csv_table_free(&node);
+	csv_table_free(&centre);
+	csv_table_free(&both);
+	stdfit("c.binary --ndf ggx --ior 1.5 --max-theta 20 -q --bins both --intervals 5% --table");
+	expect_out("\n    sigma 0.1");
+	expect_out("\n    at bin centres E 0.");
+	expect_out(", sigma +");
+	stdfit("c.binary --bins nodes");
+	expect_error(2, "node, centre, both");
+	stdfit("compare c.binary --bins both");
+	expect_error(2, "node, centre");
+	stdfit("c.binary --no-specular --intervals 1%");
+	expect_error(2, "--intervals means nothing with --no-specular");
+}
+
 static void within_takes_the_simplest(void **state)
 {
 	(void)state;
@@ -976,6 +1025,28 @@ static void faults_of_the_data_are_told(void **state)
 	shell("mv holes.csv~ before.csv");
 	stdfit("merge holes.csv before.csv -o all.csv");
 	expect_error(1, "zero-is-missing");
+}
+
+static void another_G_is_told(void **state)
+{
+	static const char *const truth[] = {"uncorrelated", "correlated"};
+
+	(void)state;
+	for (int n = 0; n < 2; n++) {
+		char arguments[256];
+
+		snprintf(arguments, sizeof arguments,
+			 "synth g.binary --kd 0.1 --ks 0.3 --ndf ggx --sigma 0.3 --ior 1.6 --noise 0.1 --gaf %s",
+			 truth[n]);
+		stdfit(arguments);
+		expect_code(0);
+		stdfit("g.binary --ndf ggx -o g.csv");
+		expect_code(0);
+		struct csv_table table = read_table("g.csv");
+		assert_string_equal(table.row[0][RESULT_SUSPECTS], n ? "correlated" : "");
+		assert_true(n == (strstr(last.err, "--gaf correlated") != NULL));
+		csv_table_free(&table);
+	}
 }
 
 static void small_stacks_are_made_larger_or_told(void **state)
@@ -1110,8 +1181,10 @@ int main(void)
 		cmocka_unit_test(output_into_head_ends_silently),
 		cmocka_unit_test(compare_summarises_tables),
 		cmocka_unit_test(weights_stand_side_by_side),
+		cmocka_unit_test(how_certain_a_fit_is_stands_in_its_row),
 		cmocka_unit_test(within_takes_the_simplest),
 		cmocka_unit_test(faults_of_the_data_are_told),
+		cmocka_unit_test(another_G_is_told),
 		cmocka_unit_test(small_stacks_are_made_larger_or_told),
 		cmocka_unit_test(cells_leave_the_terminal_alone),
 		cmocka_unit_test(noise_follows_the_seed),

@@ -2,6 +2,7 @@
 #include "fit/cli/report.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/terminal.h"
+#include "fit/results/interval_text.h"
 #include "fit/results/result.h"
 
 #include <math.h>
@@ -255,11 +256,41 @@ static void print_status(FILE *file, const char *status, bool narrow)
 static void print_axes(FILE *file, char *const *row, bool narrow)
 {
 	const double x = result_number(row, RESULT_SIGMA_X), y = result_number(row, RESULT_SIGMA_Y);
-	char text[SHOWN_SIZE];
+	double tilt_x, tilt_y;
+	char text[SHOWN_SIZE], tilt[SHOWN_SIZE] = "";
 	if (isnan(x) || isnan(y))
 		return;
-	snprintf(text, sizeof text, "(sigma_x %.5g, sigma_y %.5g, angle %.4g)", x, y, result_number(row, RESULT_ANGLE));
+	if (result_param(row[RESULT_PARAMS], "tilt_x", &tilt_x) && result_param(row[RESULT_PARAMS], "tilt_y", &tilt_y))
+		snprintf(tilt, sizeof tilt, ", tilt %.4g,%.4g", tilt_x, tilt_y);
+	snprintf(text, sizeof text, "(sigma_x %.5g, sigma_y %.5g, angle %.4g%.40s)", x, y,
+		 result_number(row, RESULT_ANGLE), tilt);
 	print_remark(file, text, narrow);
+}
+
+/* Between which values the parameters may lie, below the row. */
+static void print_intervals(FILE *file, char *const *row)
+{
+	static const char *const name[INTERVAL_PARAMETERS] = {
+		"sigma", "gamma", "n", "k", "exponent", "sigma2", "gamma2", "sigma_x/sigma_y", "angle"};
+	char text[INTERVAL_PARAMETERS * (INTERVAL_TEXT_SIZE + SHOWN_SIZE)] = "", one[INTERVAL_TEXT_SIZE];
+	int used = 0;
+	for (enum interval_parameter p = 0; p < INTERVAL_PARAMETERS; p++)
+		if (*interval_text(one, row, p))
+			used += snprintf(text + used, sizeof text - (size_t)used, "%s%s %s", used ? ", " : "", name[p],
+					 one);
+	if (used)
+		print_remark(file, text, true);
+}
+
+/* And how far they move when the entries are taken to stand elsewhere. */
+static void print_other_bins(FILE *file, char *const *row)
+{
+	static const char lead[] = "at bin centres ";
+	char text[sizeof lead + OTHER_BINS_SIZE], moves[OTHER_BINS_SIZE];
+	if (!*other_bins_text(moves, row))
+		return;
+	snprintf(text, sizeof text, "%s%s", lead, moves);
+	print_remark(file, text, true);
 }
 
 /* What a model of more terms than two has beside the columns. */
@@ -342,6 +373,8 @@ static void print_fit(FILE *file, char *const *row, bool narrow, bool weights)
 	print_status(file, row[RESULT_STATUS], narrow);
 	if (!strcmp(row[RESULT_ENERGY], "gain"))
 		print_remark(file, "(sends back more light than it gets)", narrow);
+	print_intervals(file, row);
+	print_other_bins(file, row);
 	fputc('\n', file);
 }
 

@@ -144,7 +144,7 @@ static enum status result_with_ndf(const struct run *run, const struct found *fo
 	if (status != STATUS_OK)
 		return status;
 	r->error = r->metrics.error[o->criterion.weight];
-	r->error_isotropic = NAN;
+	r->error_isotropic = r->error_correlated = NAN;
 	r->lower_bound = found->linear.lower_bound;
 	r->end = found->limited ? FIT_LIMIT : FIT_CONVERGED;
 	r->starts = found->starts;
@@ -212,8 +212,9 @@ struct nesting {
 static double gamma_of_nested(const struct ndf_class *class, int n)
 {
 	struct ndf ndf, plain;
-	const bool within = ndf_has_gamma(class) && ndf_init(&ndf, class, 1, 1, nested_gamma[n]) == STATUS_OK &&
-			    ndf_plain(&ndf, &plain) && plain.class == ndf_find(nested_name[n]) && plain.sigma_x == 1;
+	const bool within = (ndf_has_gamma(class) || ndf_has_tilt(class)) &&
+			    ndf_init(&ndf, class, 1, 1, nested_gamma[n]) == STATUS_OK && ndf_plain(&ndf, &plain) &&
+			    plain.class == ndf_find(nested_name[n]) && plain.sigma_x == 1;
 
 	return within ? nested_gamma[n] : NAN;
 }
@@ -239,7 +240,7 @@ struct nested {
 	struct fit_result result[NESTED], of_class[FIT_NDFS_MAX];
 };
 
-/* What a run remembers of its searches: 600 kB, too much for the stack of a thread. */
+/* What a run remembers of its searches: megabytes, too much for the stack of a thread. */
 struct memory {
 	struct nested nested, anisotropic;
 	struct scan_minima minima[FIT_NDFS_MAX];
@@ -249,14 +250,13 @@ static enum status fit_alone(const struct run *run, const struct ndf_class *clas
 {
 	const double begin = search_clock();
 	struct found found;
-	enum status status = run->options->algorithm ? algorithm_run(&run->multiresolution.table[SEARCH_LEVELS - 1],
-								     run->options, class, &found)
-						     : search_run(&run->multiresolution, run->options, class, &found);
+	enum status status =
+		run->options->algorithm
+			? algorithm_run(&run->multiresolution.table[SEARCH_LEVELS - 1], run->options, class, &found)
+			: search_run(&run->multiresolution, run->options, class, &run->minima[index_of(class)], &found);
 
 	if (status == STATUS_OK)
 		status = result_of(run, class, &found, r);
-	if (status == STATUS_OK && !run->options->algorithm)
-		run->minima[index_of(class)] = found.minima;
 	r->seconds = search_clock() - begin;
 	return status;
 }
@@ -405,16 +405,18 @@ static enum status fit_each_gamma(const struct run *run, const struct ndf_class 
 	struct fit_options options = *run->options;
 	struct run own = *run;
 	enum status status = STATUS_OK;
-	struct scan_minima *minima = &run->minima[index_of(class)], best_minima = *minima;
+	struct scan_minima *minima = &run->minima[index_of(class)], *best_minima = malloc(sizeof *best_minima);
 	struct fit_result one = {0};
 	struct ndf ndf;
 	struct further sum = {.options = run->options};
 	long passes = 0;
 	double worst = 0;
 
+	*r = (struct fit_result){.error = INFINITY};
+	if (!best_minima)
+		return STATUS_NO_MEMORY;
 	own.options = &options;
 	trace_further(&options, &sum);
-	*r = (struct fit_result){.error = INFINITY};
 	for (options.gamma = 1.5; options.gamma <= 16 && status == STATUS_OK; options.gamma += 0.5) {
 		const struct shape shape = {.sigma = 1, .gamma = options.gamma};
 
@@ -426,11 +428,13 @@ static enum status fit_each_gamma(const struct run *run, const struct ndf_class 
 		sum.seconds += one.seconds;
 		if (status == STATUS_OK && one.error < r->error) {
 			*r = one;
-			best_minima = *minima;
+			*best_minima = *minima;
 		}
 		worst = fmax(worst, one.error);
 	}
-	*minima = best_minima;
+	if (r->error < INFINITY)
+		*minima = *best_minima;
+	free(best_minima);
 	if (worst <= undetermined_limit(r->error))
 		r->undetermined = BOUND_GAMMA;
 	r->evaluations = sum.evaluations;
@@ -549,8 +553,12 @@ static enum status fit_anisotropic(const struct run *run, const struct ndf_class
 	start[0] = shape_of(&isotropic.model);
 	if (has_sparse_lambda(run, class))
 		options.gamma = start[0].gamma; /* the other values have been fitted */
-	count += anisotropic_starts(&run->multiresolution, &options, class, &start[0], start + count,
-				    AXES_STARTS - count, &evaluations, &status);
+	if (ndf_has_tilt(class))
+		count += tilted_starts(&run->multiresolution, &options, class, start, count, start + count,
+				       AXES_STARTS - count, &evaluations, &status);
+	else
+		count += anisotropic_starts(&run->multiresolution, &options, class, &start[0], start + count,
+					    AXES_STARTS - count, &evaluations, &status);
 	if (status == STATUS_OK)
 		status = search_from(&run->multiresolution, &options, class, start, count, &start[0], INFINITY, &found);
 	if (status == STATUS_OK)
@@ -737,6 +745,21 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 	return STATUS_OK;
 }
 
+/* What tilts is GGX where nothing tells the azimuth. */
+static enum status fit_level(const struct run *run, const struct ndf_class *class, struct nested *nested,
+			     struct fit_result *r)
+{
+	const struct ndf_class *ggx = ndf_find("ggx");
+	enum status status = fit_class(run, ggx, nested, r);
+
+	if (status != STATUS_OK)
+		return status;
+	run->minima[index_of(class)] = run->minima[index_of(ggx)];
+	const struct ndf ndf = r->model.ndf;
+
+	return ndf_init(&r->model.ndf, class, ndf.sigma_x, ndf.sigma_y, ndf.gamma);
+}
+
 static enum status fit_anew(const struct run *run, const struct ndf_class *class, struct nested *nested,
 			    struct fit_result *r)
 {
@@ -749,6 +772,8 @@ static enum status fit_anew(const struct run *run, const struct ndf_class *class
 		return fit_free_form(run, nested, r);
 	if (run->options->anisotropic && isnan(run->options->sigma_y))
 		return fit_anisotropic(run, class, nested, r);
+	if (ndf_has_tilt(class) && !run->options->anisotropic && !run->options->algorithm)
+		return fit_level(run, class, nested, r);
 	if (nesting.any)
 		return fit_with_nested(run, class, &nesting, nested, r);
 	if (has_sparse_lambda(run, class))
@@ -816,6 +841,37 @@ static enum status find_undetermined(const struct run *run, const struct ndf_cla
 	return status;
 }
 
+/* E from which on a fit is so bad that the data may have another G, and the part of it that tells that they have. */
+#define BAD 0.03
+#define MUCH_BETTER 0.6
+
+/* What the best of the fits would be with correlated G, if that is much better. Of data with uncorrelated G it is worse. */
+static enum status try_correlated(const struct run *run, struct fit_result results[])
+{
+	struct fit_options other = *run->options;
+	struct fit_result *best = &results[0];
+	const struct ndf_class *class = other.ndf[0];
+
+	for (int n = 1; n < other.n_ndf; n++)
+		if (results[n].error < best->error) {
+			best = &results[n];
+			class = other.ndf[n];
+		}
+	if (other.criterion.gaf != GAF_UNCORRELATED || other.algorithm || !other.specular || other.anisotropic ||
+	    ndf_is_tabulated(class) || leave_out(&other) || best->error < BAD)
+		return STATUS_OK;
+	const struct shape shape = shape_of(&best->model);
+	const double enough = MUCH_BETTER * best->error;
+	double error;
+
+	other.criterion.gaf = GAF_CORRELATED;
+	const enum status status = search_near(&run->multiresolution, &other, class, &shape, enough, &error);
+
+	if (status == STATUS_OK && error < enough)
+		best->error_correlated = error;
+	return status;
+}
+
 enum status fit_run(const struct fit_context *context, const struct measurement *measurement,
 		    const struct fit_options *options, struct fit_result *results, struct error *error)
 {
@@ -850,6 +906,8 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 		if (status == STATUS_OK)
 			status = find_undetermined(&run, options->ndf[n], nested, &results[n]);
 	}
+	if (status == STATUS_OK)
+		status = try_correlated(&run, results);
 	for (int n = 0; n < options->n_ndf && status != STATUS_OK; n++)
 		fit_result_free(&results[n]);
 	free(memory);
@@ -871,6 +929,43 @@ enum status fit_samples_of(const struct fit_context *context, const struct measu
 		return error_set(error, status, "no entry to fit: expected some valid ones that are not all zero");
 	if (status == STATUS_OK)
 		status = multiresolution_init(multiresolution, &full);
+	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
+}
+
+/* The intervals of one result. */
+static enum status find_intervals(const struct multiresolution *multiresolution, const struct fit_options *asked,
+				  const struct ndf_class *class, double percent, struct fit_result *r)
+{
+	const double begin = search_clock();
+	const struct shape best = shape_of(&r->model);
+	struct fit_options options = *asked;
+
+	if (options.lambda == LAMBDA_INTEGER || options.lambda == LAMBDA_HALF_INTEGER)
+		options.gamma = r->model.ndf.gamma; /* the values between have no such form */
+	const enum status status =
+		interval_find(multiresolution, &options, class, &best, r->error, percent, r->interval, &r->evaluations);
+
+	/* A simpler model may have been as good. */
+	if (!cook_torrance_has_second(&r->model))
+		r->interval[INTERVAL_SIGMA2].n = r->interval[INTERVAL_GAMMA2].n = 0;
+	if (best.stretch == 0)
+		r->interval[INTERVAL_ANGLE].n = 0;
+	r->seconds += search_clock() - begin;
+	return status;
+}
+
+enum status fit_intervals(const struct fit_context *context, const struct measurement *measurement,
+			  const struct fit_options *options, double percent, struct fit_result *results,
+			  struct error *error)
+{
+	struct multiresolution multiresolution;
+	enum status status = fit_samples_of(context, measurement, options, &multiresolution, error);
+
+	if (status != STATUS_OK)
+		return status;
+	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++)
+		status = find_intervals(&multiresolution, options, options->ndf[n], percent, &results[n]);
+	multiresolution_free(&multiresolution);
 	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
 }
 
@@ -910,7 +1005,7 @@ enum status fit_eval(const struct measurement *measurement, const struct cook_to
 	enum status status;
 
 	own.criterion.gaf = model->gaf;
-	if (model->ndf.sigma_x != model->ndf.sigma_y && !measurement->scattered)
+	if (ndf_is_anisotropic(&model->ndf) && !measurement->scattered)
 		return error_set(error, STATUS_DOMAIN, "%s", isotropic_table);
 	status = fit_criterion_check(&own, error);
 	if (status != STATUS_OK)

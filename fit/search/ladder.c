@@ -17,7 +17,7 @@ static int parameters_of_lobes(const struct fit_options *o)
 
 	n += isnan(o->sigma) + free_gamma;
 	if (o->anisotropic)
-		n += isnan(o->sigma_y) + isnan(o->angle);
+		n += isnan(o->sigma_y) + isnan(o->angle) + (ndf_has_tilt(o->ndf[0]) ? 2 : 0);
 	if (o->lobes > 1)
 		n += channels + 1 + free_gamma;
 	return n;
