@@ -77,14 +77,15 @@ STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_new(stdfit_ndf **ndf, const char
 
 /* stdfit_ndf_new_piecewise - D linear in theta between nodes; the values are normalised here [Ribardiere et al. 2019].
  * Given: n_nodes in 2 .. 1048576; theta increasing strictly from 0 to pi/2 (to 1e-12); Dx >= 0 along phi = 0, and Dy along
- * phi = 90 degrees in the same manner; Dy NULL: isotropic. No visible normals, no moments; an anisotropic one has no albedo. */
+ * phi = 90 degrees in the same manner; Dy NULL: isotropic. No visible normals, no moments; an anisotropic one has no
+ * albedo. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_new_piecewise(stdfit_ndf **ndf, int n_nodes, const double *theta,
 							      const double *Dx, const double *Dy,
 							      struct stdfit_error *error);
 
 /* stdfit_ndf_new_ellipsoid - the normals of the half ellipsoid |A p| = 1, A regular, in rows [Walter et al. 2014]:
- * "ggx" whose facets lean on average, where A has an axis askew. Then Smith's masking would exceed 1 from some directions, and is 1
- * there; and there are no albedo, transmission or multiple scattering. */
+ * "ggx" whose facets lean on average, where A has an axis askew. Then Smith's masking would exceed 1 from some
+ * directions, and is 1 there; and there are no albedo, transmission or multiple scattering. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_new_ellipsoid(stdfit_ndf **ndf, const double A[9],
 							      struct stdfit_error *error);
 
@@ -149,12 +150,13 @@ STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_furnace(const stdfit_ndf *ndf, c
 /* ---- Models ---- */
 
 /* struct stdfit_model - a model but for its NDF. gaf: as above; fresnel: "dielectric" (NULL), "schlick", "conductor",
- * "none", "f82". Ranges: n in (0, 1e75], k in [0, 1e75], read by the conductor only; kd, ks, kg, ks2 in [0, 1e6]. What richer
- * models have besides may be left 0:
+ * "none", "f82". Ranges: n in (0, 1e75], k in [0, 1e75], read by the conductor only; kd, ks, kg, ks2 in [0, 1e6].
+ * What richer models have besides may be left 0:
  *    f0, f82, f90      of "f82" only: F along the normal, at cos_d = 1/7 and at grazing incidence, in [0, 1]
- *    kg, exponent      kg cos_d^2 ((1 - cos_i)^p + (1 - cos_o)^p)/pi is added; p in [1, 20], read where some kg is not 0
- *    ks2, sigma2, gamma2   a second lobe of the same kind of NDF, isotropic, with the same F and G; the last two, gamma2 of
- *                      NDFs that have a gamma, are read where some ks2 is not 0; of a class of stdfit_ndf_new() only */
+ *    kg, exponent      kg cos_d^2 ((1 - cos_i)^p + (1 - cos_o)^p)/pi is added; p in [1, 20], read where some kg is
+ * not 0    ks2, sigma2, gamma2   a second lobe of the same kind of NDF, isotropic, with the same F and G; the last
+ * two, gamma2 of                      NDFs that have a gamma, are read where some ks2 is not 0; of a class of
+ * stdfit_ndf_new() only */
 struct stdfit_model {
 	const char *gaf, *fresnel;
 	double n, k;
@@ -279,8 +281,8 @@ STDFIT_MUST_CHECK enum stdfit_status stdfit_measurement_from_samples(stdfit_meas
 								     const double *wi, const double *wo,
 								     const double *values, const double *solid_angles,
 								     struct stdfit_error *error);
-/* stdfit_measurement_from_model - an ideal measurement of an isotropic model. bins: "node" (NULL), entries at whole degrees, or
- * "centre", half a degree on. */
+/* stdfit_measurement_from_model - an ideal measurement of an isotropic model. bins: "node" (NULL), entries at whole
+ * degrees, or "centre", half a degree on. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_measurement_from_model(stdfit_measurement **measurement,
 								   const struct stdfit_model *model,
 								   const stdfit_ndf *ndf, const char *bins, int n_phi_d,
@@ -363,7 +365,8 @@ enum stdfit_parameter {
 	STDFIT_PARAMETER_GAMMA2 = 8192
 };
 
-/* stdfit_parameter_name - "sigma", "gamma", "n", "kd_r", ..., "ks_b", "k", "angle", "exponent", "sigma2", "gamma2" of one such bit; NULL for any other number. */
+/* stdfit_parameter_name - "sigma", "gamma", "n", "kd_r", ..., "ks_b", "k", "angle", "exponent", "sigma2", "gamma2"
+ * of one such bit; NULL for any other number. */
 const char *stdfit_parameter_name(unsigned bit);
 
 /* struct stdfit_result - of one NDF. */

@@ -41,8 +41,8 @@ struct comparison {
 
 /* comparison_init - finds the NDFs of the rows of a result table, which must outlive *c, and from them the columns. The rows
  * get reordered: those of one weight, material and path follow one another.
- * pictures: whether there are columns of picture errors. by_gain: of each weight, lines go by how much STD gains over GGX, not by
- * name; those without are last.
+ * pictures: whether there are columns of picture errors. by_gain: of each weight, lines go by how much STD gains
+ * over GGX, not by name; those without are last.
  * Errors: STATUS_UNSUPPORTED: more than FIT_NDFS_MAX NDFs; STATUS_NO_MEMORY. Call comparison_free() in any case. */
 MUST_CHECK enum status comparison_init(struct comparison *c, struct csv_table *rows, bool pictures, bool by_gain,
 				       struct error *error);

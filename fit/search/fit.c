@@ -668,7 +668,8 @@ static enum status fit_without_grazing(const struct run *run, const struct ndf_c
 	return status;
 }
 
-/* Of two lobes: where one does as well, the second may have any shape; where none of the grazing term does, that any exponent. */
+/* Of two lobes: where one does as well, the second may have any shape; where none of the grazing term does, that any
+ * exponent. */
 static unsigned open_beside(const struct run *run, const struct ndf_class *class, const struct fit_result *r,
 			    double one_lobe, double no_grazing)
 {
@@ -845,7 +846,8 @@ static enum status find_undetermined(const struct run *run, const struct ndf_cla
 #define BAD 0.03
 #define MUCH_BETTER 0.6
 
-/* What the best of the fits would be with correlated G, if that is much better. Of data with uncorrelated G it is worse. */
+/* What the best of the fits would be with correlated G, if that is much better. Of data with uncorrelated G it is
+ * worse. */
 static enum status try_correlated(const struct run *run, struct fit_result results[])
 {
 	struct fit_options other = *run->options;

@@ -86,8 +86,9 @@ void fit_result_free(struct fit_result *result);
 MUST_CHECK enum status fit_run(const struct fit_context *context, const struct measurement *measurement,
 			       const struct fit_options *options, struct fit_result *results, struct error *error);
 
-/* fit_intervals - how certain the shapes of fit_run()'s results are: results[n].interval of each of the options' NDFs, see
- * interval_find(); percent > 0. Evaluations and seconds are added to those of the results. pl's stay empty.
+/* fit_intervals - how certain the shapes of fit_run()'s results are: results[n].interval of each of the options'
+ * NDFs, see interval_find(); percent > 0. Evaluations and seconds are added to those of the results. pl's stay
+ * empty.
  * Errors: as fit_run() */
 MUST_CHECK enum status fit_intervals(const struct fit_context *context, const struct measurement *measurement,
 				     const struct fit_options *options, double percent, struct fit_result *results,

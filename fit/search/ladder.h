@@ -17,7 +17,8 @@ struct ladder_rung {
 	int parameters;
 };
 
-/* ladder_rungs - the models of the ladder that go together with the rest of the options (fit_options_rule()), fewest parameters first;
+/* ladder_rungs - the models of the ladder that go together with the rest of the options (fit_options_rule()), fewest
+ * parameters first;
  * of the options' NDFs the first. Returns how many there are, LADDER_RUNGS at most. */
 int ladder_rungs(const struct fit_options *options, struct ladder_rung rung[LADDER_RUNGS]);
 

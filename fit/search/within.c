@@ -246,7 +246,8 @@ static enum status estimate_richer(struct selection *s, const struct fit_options
 	return status;
 }
 
-/* Whether the least E of a variant can be estimated: forms of Lambda that exist at some gammas only have no space to search. */
+/* Whether the least E of a variant can be estimated: forms of Lambda that exist at some gammas only have no space to
+ * search. */
 static bool has_estimate(const struct fit_options *o)
 {
 	return !(o->specular && isnan(o->gamma) && (o->lambda == LAMBDA_INTEGER || o->lambda == LAMBDA_HALF_INTEGER) &&
@@ -277,8 +278,8 @@ static enum status estimate_variant(struct selection *s, struct variant v, struc
 	return status;
 }
 
-/* Estimates of a variant and of the best one are of the same samples. What a search of these misses of one that goes on to the
- * full table. */
+/* Estimates of a variant and of the best one are of the same samples. What a search of these misses of one that goes
+ * on to the full table. */
 #define MISSED 1.01
 /* By how much the estimate of the best may be wrong. */
 #define UNSURE 0.003
@@ -365,7 +366,8 @@ static enum status is_within(struct selection *s, double E, bool *within, struct
 	return status;
 }
 
-/* The model without anything richer than what was asked for, and that less one part: where it fails, it spares all inside. */
+/* The model without anything richer than what was asked for, and that less one part: where it fails, it spares all
+ * inside. */
 static enum status prune(struct selection *s, struct error *error)
 {
 	static const unsigned richer = PART_GRAZING | PART_F82 | PART_SECOND;
