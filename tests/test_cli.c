@@ -1019,6 +1019,28 @@ static void faults_of_the_data_are_told(void **state)
 	expect_error(1, "zero-is-missing");
 }
 
+static void another_G_is_told(void **state)
+{
+	static const char *const truth[] = {"uncorrelated", "correlated"};
+
+	(void)state;
+	for (int n = 0; n < 2; n++) {
+		char arguments[256];
+
+		snprintf(arguments, sizeof arguments,
+			 "synth g.binary --kd 0.1 --ks 0.3 --ndf ggx --sigma 0.3 --ior 1.6 --noise 0.1 --gaf %s",
+			 truth[n]);
+		stdfit(arguments);
+		expect_code(0);
+		stdfit("g.binary --ndf ggx -o g.csv");
+		expect_code(0);
+		struct csv_table table = read_table("g.csv");
+		assert_string_equal(table.row[0][RESULT_SUSPECTS], n ? "correlated" : "");
+		assert_true(n == (strstr(last.err, "--gaf correlated") != NULL));
+		csv_table_free(&table);
+	}
+}
+
 static void small_stacks_are_made_larger_or_told(void **state)
 {
 	static const struct {
@@ -1154,6 +1176,7 @@ int main(void)
 		cmocka_unit_test(how_certain_a_fit_is_stands_in_its_row),
 		cmocka_unit_test(within_takes_the_simplest),
 		cmocka_unit_test(faults_of_the_data_are_told),
+		cmocka_unit_test(another_G_is_told),
 		cmocka_unit_test(small_stacks_are_made_larger_or_told),
 		cmocka_unit_test(cells_leave_the_terminal_alone),
 		cmocka_unit_test(noise_follows_the_seed),

@@ -144,7 +144,7 @@ static enum status result_with_ndf(const struct run *run, const struct found *fo
 	if (status != STATUS_OK)
 		return status;
 	r->error = r->metrics.error[o->criterion.weight];
-	r->error_isotropic = NAN;
+	r->error_isotropic = r->error_correlated = NAN;
 	r->lower_bound = found->linear.lower_bound;
 	r->end = found->limited ? FIT_LIMIT : FIT_CONVERGED;
 	r->starts = found->starts;
@@ -797,6 +797,37 @@ static enum status find_undetermined(const struct run *run, const struct ndf_cla
 	return status;
 }
 
+/* E from which on a fit is so bad that the data may have another G, and the part of it that tells that they have. */
+#define BAD 0.03
+#define MUCH_BETTER 0.6
+
+/* What the best of the fits would be with correlated G, if that is much better. Of data with uncorrelated G it is worse. */
+static enum status try_correlated(const struct run *run, struct fit_result results[])
+{
+	struct fit_options other = *run->options;
+	struct fit_result *best = &results[0];
+	const struct ndf_class *class = other.ndf[0];
+
+	for (int n = 1; n < other.n_ndf; n++)
+		if (results[n].error < best->error) {
+			best = &results[n];
+			class = other.ndf[n];
+		}
+	if (other.criterion.gaf != GAF_UNCORRELATED || other.algorithm || !other.specular || other.anisotropic ||
+	    ndf_is_tabulated(class) || leave_out(&other) || best->error < BAD)
+		return STATUS_OK;
+	const struct shape shape = shape_of(&best->model);
+	const double enough = MUCH_BETTER * best->error;
+	double error;
+
+	other.criterion.gaf = GAF_CORRELATED;
+	const enum status status = search_near(&run->multiresolution, &other, class, &shape, enough, &error);
+
+	if (status == STATUS_OK && error < enough)
+		best->error_correlated = error;
+	return status;
+}
+
 enum status fit_run(const struct fit_context *context, const struct measurement *measurement,
 		    const struct fit_options *options, struct fit_result *results, struct error *error)
 {
@@ -831,6 +862,8 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 		if (status == STATUS_OK)
 			status = find_undetermined(&run, options->ndf[n], nested, &results[n]);
 	}
+	if (status == STATUS_OK)
+		status = try_correlated(&run, results);
 	for (int n = 0; n < options->n_ndf && status != STATUS_OK; n++)
 		fit_result_free(&results[n]);
 	free(memory);
@@ -854,6 +887,8 @@ static enum status find_intervals(const struct multiresolution *multiresolution,
 	/* A simpler model may have been as good. */
 	if (!cook_torrance_has_second(&r->model))
 		r->interval[INTERVAL_SIGMA2].n = r->interval[INTERVAL_GAMMA2].n = 0;
+	if (best.stretch == 0)
+		r->interval[INTERVAL_ANGLE].n = 0;
 	r->seconds += search_clock() - begin;
 	return status;
 }

@@ -39,8 +39,9 @@ struct fit_result {
 	struct pwl *pwl;            /* pl: the table of model.ndf, owned by the result; else NULL */
 	bool diffuse, specular;     /* what the model has, as in the options */
 	double error;               /* E under the fit's own weight */
-	double error_isotropic;     /* of an anisotropic fit: E of the isotropic one, which is never below; else NaN */
-	double lower_bound;         /* certified: no kd, ks of this shape goes below it */
+	double error_correlated; /* of fit_run()'s best: E with correlated G is below this, much below `error`; else NaN */
+	double error_isotropic; /* of an anisotropic fit: E of the isotropic one, which is never below; else NaN */
+	double lower_bound;     /* certified: no kd, ks of this shape goes below it */
 	struct fit_metrics metrics;
 	enum fit_end end;
 	int starts, starts_agreeing; /* local searches run; those that ended within 0.1 % of the best */

@@ -633,6 +633,27 @@ enum status search_minima(const struct multiresolution *multiresolution, const s
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }
 
+enum status search_near(const struct multiresolution *multiresolution, const struct fit_options *options,
+			const struct ndf_class *class, const struct shape *shape, double enough, double *error)
+{
+	const struct local_settings settings = {NLOPT_LN_SBPLX, 0.7, 1e-2, 40, false, enough};
+	struct search s = new_search(multiresolution, options, class);
+	struct space_point point = {.error = 0};
+	struct objective o;
+	enum status status = objective_init(&o, &multiresolution->table[0], options, class, 1, MASKING_COARSE);
+
+	*error = INFINITY;
+	if (status != STATUS_OK)
+		return status;
+	space_from_shape(&s.space, shape, point.x);
+	if (s.space.dims > 0)
+		status = local_descend(&s.space, &o, &settings, NULL, NULL, &point, NULL);
+	if (status == STATUS_OK && s.space.dims > 0)
+		*error = point.error;
+	objective_free(&o);
+	return status;
+}
+
 enum status search_from(const struct multiresolution *multiresolution, const struct fit_options *options,
 			const struct ndf_class *class, const struct shape given[], int n_given,
 			const struct shape *known, double error, struct found *found)

@@ -56,6 +56,13 @@ MUST_CHECK enum status search_minima(const struct multiresolution *multiresoluti
 				     struct space_point point[], int n_max, int *n, struct scan_minima *scan,
 				     _Atomic long *evaluations);
 
+/* search_near - whether there is an E below `enough` near a shape: *error is one, or the least of forty evaluations, on the
+ * smallest sample alone; INFINITY if there is nothing to search.
+ * Errors:  as search_run() */
+MUST_CHECK enum status search_near(const struct multiresolution *multiresolution, const struct fit_options *options,
+				   const struct ndf_class *class, const struct shape *shape, double enough,
+				   double *error);
+
 /* search_from - goes down from the given shapes only (at most SEARCH_GIVEN), against a shape that is known already and
  * its error: what leads there, or to nothing better, is given up early. If all is, found->linear.error is INFINITY. Of two
  * lobes the options' random starts come after that.

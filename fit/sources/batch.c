@@ -173,6 +173,17 @@ static enum status fit_centres(struct run *run, const struct measurement *measur
 	return status;
 }
 
+/* What only the fits can tell of the data. */
+static void note_correlated(struct batch_file *file, const struct fit_result result[], int n)
+{
+	for (int i = 0; i < n; i++)
+		if (!isnan(result[i].error_correlated)) {
+			file->suspects.found |= SUSPECT_CORRELATED;
+			file->suspects.correlated = result[i].error_correlated;
+			suspects_words(&file->suspects, file->words);
+		}
+}
+
 /* Fits what *fit asks for under weight w. */
 static enum status fit_samples(struct run *run, struct batch_file *file, const struct measurement *measurement, int w,
 			       struct fit_options *fit)
@@ -191,6 +202,7 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 		status = fit_run(context, measurement, fit, result, &file->error);
 	if (status != STATUS_OK)
 		return status;
+	note_correlated(file, result, fit->n_ndf);
 	if (!isnan(options->intervals) && fit->specular)
 		status = fit_intervals(context, measurement, fit, options->intervals, result, &file->error);
 	if (status == STATUS_OK && options->both_bins && !measurement->scattered)
