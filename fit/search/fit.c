@@ -649,6 +649,25 @@ static int richer_starts(const struct run *run, const struct ndf_class *class, c
 					  SEARCH_GIVEN - count, evaluations, status);
 }
 
+/* Two lobes beside a grazing term hold two lobes without one, too, which the simpler model is not. */
+static enum status fit_without_grazing(const struct run *run, const struct ndf_class *class, struct fit_result *r)
+{
+	struct fit_options options = *run->options;
+	struct memory *fresh = calloc(1, sizeof *fresh);
+	struct run own = *run;
+	enum status status = STATUS_NO_MEMORY;
+
+	options.grazing = false;
+	own.options = &options;
+	if (fresh) {
+		own.minima = fresh->minima;
+		own.isotropic = &fresh->nested;
+		status = fit_class(&own, class, &fresh->nested, r);
+	}
+	free(fresh);
+	return status;
+}
+
 /* A richer model: the simpler one first. With one lobe there is a scan of its own as well. A richer model never loses. */
 static enum status fit_richer(const struct run *run, const struct ndf_class *class,
 			      const struct fit_options *simpler_options, struct nested *nested, struct fit_result *r)
@@ -656,7 +675,8 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 	const bool scans = run->options->lobes < 2;
 	struct memory *fresh = calloc(1, sizeof *fresh);
 	struct run own = *run;
-	struct fit_result simpler;
+	const bool two_ways = run->options->lobes > 1 && run->options->grazing;
+	struct fit_result simpler, other;
 	struct shape start[SEARCH_GIVEN];
 	struct found found;
 	long evaluations = 0;
@@ -677,6 +697,10 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 		status = fit_alone(run, class, r);
 	if (status == STATUS_OK)
 		count = richer_starts(run, class, &simpler, nested, start, &evaluations, &status);
+	if (status == STATUS_OK && two_ways)
+		status = fit_without_grazing(run, class, &other);
+	if (status == STATUS_OK && two_ways && cook_torrance_has_second(&other.model))
+		start[count < SEARCH_GIVEN ? count++ : count - 1] = shape_of(&other.model);
 	if (status == STATUS_OK) {
 		const struct shape known = scans ? shape_of(&r->model) : start[0];
 
@@ -697,6 +721,11 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 	take_simpler(run, r, &simpler);
 	r->evaluations += simpler.evaluations + evaluations;
 	r->passes += simpler.passes;
+	if (two_ways) {
+		take_simpler(run, r, &other);
+		r->evaluations += other.evaluations;
+		r->passes += other.passes;
+	}
 	r->seconds = simpler.seconds + search_clock() - begin;
 	return STATUS_OK;
 }
@@ -871,6 +900,23 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
 }
 
+enum status fit_samples_of(const struct fit_context *context, const struct measurement *measurement,
+			   const struct fit_options *options, struct multiresolution *multiresolution,
+			   struct error *error)
+{
+	struct sample_set full;
+	enum status status = check_arguments(context, measurement, options, error);
+
+	if (status != STATUS_OK)
+		return status;
+	status = sample_set_init(&full, &context->geometry, measurement, options->threads);
+	if (status == STATUS_NO_DATA)
+		return error_set(error, status, "no entry to fit: expected some valid ones that are not all zero");
+	if (status == STATUS_OK)
+		status = multiresolution_init(multiresolution, &full);
+	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
+}
+
 /* The intervals of one result. */
 static enum status find_intervals(const struct multiresolution *multiresolution, const struct fit_options *asked,
 				  const struct ndf_class *class, double percent, struct fit_result *r)
@@ -898,16 +944,10 @@ enum status fit_intervals(const struct fit_context *context, const struct measur
 			  struct error *error)
 {
 	struct multiresolution multiresolution;
-	struct sample_set full;
-	enum status status = check_arguments(context, measurement, options, error);
+	enum status status = fit_samples_of(context, measurement, options, &multiresolution, error);
 
 	if (status != STATUS_OK)
 		return status;
-	status = sample_set_init(&full, &context->geometry, measurement, options->threads);
-	if (status == STATUS_OK)
-		status = multiresolution_init(&multiresolution, &full);
-	if (status != STATUS_OK)
-		return error_set(error, status, "%s", status_str(status));
 	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++)
 		status = find_intervals(&multiresolution, options, options->ndf[n], percent, &results[n]);
 	multiresolution_free(&multiresolution);
@@ -918,24 +958,23 @@ enum status fit_estimate(const struct fit_context *context, const struct measure
 			 const struct fit_options *options, double *estimate, struct error *error)
 {
 	struct multiresolution multiresolution;
-	struct sample_set full;
-	enum status status = check_arguments(context, measurement, options, error);
+	enum status status = fit_samples_of(context, measurement, options, &multiresolution, error);
 	bool known = true;
 
 	*estimate = INFINITY;
-	if (status == STATUS_OK)
-		status = sample_set_init(&full, &context->geometry, measurement, options->threads);
-	if (status != STATUS_OK)
-		return status;
-	status = multiresolution_init(&multiresolution, &full);
 	if (status != STATUS_OK)
 		return status;
 	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++) {
+		struct space space;
+		struct shape shape;
 		double one;
 
-		status = search_estimate(&multiresolution, options, options->ndf[n], &one);
+		space_init(&space, options, options->ndf[n]);
+		known = known && space.dims > 0;
+		if (space.dims == 0)
+			continue;
+		status = search_estimate(&multiresolution, options, options->ndf[n], NULL, 0, &shape, &one);
 		*estimate = fmin(*estimate, one);
-		known = known && isfinite(one);
 	}
 	if (!known)
 		*estimate = INFINITY;
