@@ -21,10 +21,12 @@ double ndf_cdf_phi(const struct ndf *ndf, double phi)
 	return from_axis(ndf, phi - axis) - from_axis(ndf, -axis);
 }
 
-/* Share below the slope tan(theta) where the roughness is s. */
+/* Share below the slope tan(theta) where the roughness is s; rounding may lead out of [0, 1]. */
 static double below(const struct ndf *ndf, double theta, double s)
 {
-	return theta >= 0.5 * M_PI ? 1.0 : ndf->class->share(ndf, tan(theta) / s);
+	if (theta <= 0.0)
+		return 0.0;
+	return theta >= 0.5 * M_PI ? 1.0 : fmin(fmax(ndf->class->share(ndf, tan(theta) / s), 0.0), 1.0);
 }
 
 double ndf_cdf_theta(const struct ndf *ndf, double theta, double phi)

@@ -130,7 +130,7 @@ static inline double ggx_tilt(const struct ndf *ndf, double u)
 static inline double ggx_share(const struct ndf *ndf, double s)
 {
 	(void)ndf;
-	return 1.0 / (1.0 + 1.0 / s / s);
+	return s < 1.0 ? s * s / (1.0 + s * s) : 1.0 / (1.0 + 1.0 / s / s);
 }
 
 /* GGX: P2 = (1 + (q/s)^2)^(-3/2) / (2 s) */

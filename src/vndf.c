@@ -294,7 +294,7 @@ void vndf_cdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m, double *alon
 	if (seen.cos_i < 0.0)
 		return;
 	if (ndf->gamma != 2.0 && ndf->K == 0.0) {
-		const double cot = fmin(seen.cos_i / seen.sin_i, 1e100);
+		const double cot = seen.sin_i > 1e-100 ? seen.cos_i / seen.sin_i : 1e100;
 		*along = fmin(beckmann_seen_below(&seen, fmin(s.x, cot)) / beckmann_seen_below(&seen, cot), 1.0);
 		*across = 0.5 * erfc(-s.y);
 		return;
@@ -303,8 +303,8 @@ void vndf_cdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m, double *alon
 	const struct student slopes_along = {ndf->gamma - 0.5, K, seen.cos_i,
 					     seen.sin_i > 1e-160 ? scale * seen.sin_i : 0.0};
 	const struct student slopes_across = {ndf->gamma, a * M_1_PI / K, 1.0, 0.0};
-	*along = student_cdf(&slopes_along, s.x / scale);
-	*across = student_cdf(&slopes_across, s.y / hypot(scale, s.x));
+	*along = fmin(student_cdf(&slopes_along, s.x / scale), 1.0);
+	*across = fmin(student_cdf(&slopes_across, s.y / hypot(scale, s.x)), 1.0);
 }
 
 double vndf_rational_pdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m)

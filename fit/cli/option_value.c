@@ -157,7 +157,9 @@ const struct option_spec option_specs[] = {
 	{"starts", 0, KIND_INT, FITS, RECORDED, "N", "more searches, from random shapes", AT(fit.starts), 0, 100000},
 	{"seed", 0, KIND_SEED, SEARCHES, RECORDED, "N", "seed of the random shapes", AT(fit.seed), 0, 0},
 	{"within", 0, KIND_PERCENT, FIT, RECORDED_WITHIN, "P%",
-	 "per material only the simplest model whose error is within P% of the best", AT(within), 0, 1000},
+	 "per material only the simplest model whose error is within P% of the best, from a gray Lambert term to two "
+	 "coloured lobes; --lobes, --diffuse or --fresnel given keeps out what is richer in that",
+	 AT(within), 0, 1000},
 	{"intervals", 0, KIND_PERCENT, FIT | REPORT, RECORDED_GIVEN, "P%",
 	 "how certain the shape is: between which values sigma, gamma, n ... each may lie, the others refitted, while "
 	 "the error stays within P% of the best; 1 is a good choice",
@@ -234,6 +236,14 @@ const struct option_spec option_specs[] = {
 	{"pictures", 0, KIND_ON, COMPARE, NOT_RECORDED, NULL,
 	 "render each model and its measured table, too, and show delta E and SSIM of the pictures", AT(pictures), 0,
 	 0},
+	{"models", 0, KIND_ON, COMPARE, NOT_RECORDED, NULL,
+	 "instead of NDFs compare models of the first NDF, std if none is named, from a gray Lambert term to two "
+	 "coloured "
+	 "lobes: parameters, error, gain over the paper's model in %, delta E, SSIM and seconds of each",
+	 AT(models), 0, 0},
+	{"sort", 0, KIND_SORT, COMPARE, NOT_RECORDED, "ORDER",
+	 "materials by name, or by how much STD gains over GGX, with --models the best model over the paper's",
+	 AT(sort_by_gain), 0, 0},
 	{"output", 'o', KIND_TEXT, RENDER, NOT_RECORDED, "FILE",
 	 "the picture: FILE.png (sRGB) or FILE.pfm (linear), - for standard output", AT(picture), 0, 0},
 	{"environment", 'e', KIND_TEXT, RENDER | REPORT, NOT_RECORDED, "NAME",
@@ -267,8 +277,10 @@ const struct option_spec option_specs[] = {
 _Static_assert(sizeof option_specs / sizeof *option_specs <= OPTIONS_MAX,
 	       "struct options.given has an entry per option");
 
+/* Of values that are false and true. */
 static const char *const diffuse_name[] = {"lambert", "burley"};
 static const char both_bins[] = "both";
+static const char *const sort_name[] = {"name", "gain"};
 
 const char *option_choice(enum option_kind kind, int i)
 {
@@ -287,6 +299,8 @@ const char *option_choice(enum option_kind kind, int i)
 		return i < FRESNEL_COUNT ? fresnel_name((enum fresnel)i) : NULL;
 	case KIND_DIFFUSE:
 		return i < 2 ? diffuse_name[i] : NULL;
+	case KIND_SORT:
+		return i < 2 ? sort_name[i] : NULL;
 	case KIND_WEIGHT:
 	case KIND_WEIGHTS:
 		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
@@ -312,12 +326,12 @@ const char *option_choice(enum option_kind kind, int i)
 	}
 }
 
-static enum status diffuse_find(const char *text, bool *burley)
+static enum status either_find(const char *const names[2], const char *text, bool *second)
 {
-	const int i = names_find(diffuse_name, 2, text);
+	const int i = names_find(names, 2, text);
 	if (i < 0)
 		return STATUS_DOMAIN;
-	*burley = i == 1;
+	*second = i == 1;
 	return STATUS_OK;
 }
 
@@ -342,7 +356,9 @@ static enum status choice_find(enum option_kind kind, const char *text, void *va
 	case KIND_FRESNEL:
 		return fresnel_find(text, value);
 	case KIND_DIFFUSE:
-		return diffuse_find(text, value);
+		return either_find(diffuse_name, text, value);
+	case KIND_SORT:
+		return either_find(sort_name, text, value);
 	case KIND_WEIGHT:
 		return weight_find(text, value);
 	case KIND_QUANTITY:
@@ -687,6 +703,9 @@ void option_write(FILE *file, const struct options *options, const struct option
 		break;
 	case KIND_DIFFUSE:
 		fputs(diffuse_name[*(const bool *)value], file);
+		break;
+	case KIND_SORT:
+		fputs(sort_name[*(const bool *)value], file);
 		break;
 	case KIND_WEIGHT:
 		fputs(weight_name(*(const enum weight *)value), file);

@@ -259,7 +259,7 @@ static void tell_cost(struct export *export, const double before[WEIGHT_COUNT], 
 enum status substitute_report(struct export *export, const struct measurement *measurement, struct error *error)
 {
 	const struct fit_options *fit = export->source.fit;
-	struct fit_metrics before, after;
+	struct fit_metrics before, after = {.error = {0}};
 	enum status status = fit_eval(measurement, export->source.model, fit, &before, error);
 	if (status == STATUS_OK && export_shows_model(export))
 		status = fit_eval(measurement, &export->model, fit, &after, error);
