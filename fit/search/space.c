@@ -21,10 +21,16 @@ static double *parameter(struct shape *shape, enum coordinate c)
 		return &shape->second_gamma;
 	case COORDINATE_ANGLE:
 		return &shape->angle;
+	case COORDINATE_TILT_X:
+		return &shape->tilt_x;
+	case COORDINATE_TILT_Y:
+		return &shape->tilt_y;
 	default:
 		return &shape->stretch;
 	}
 }
+
+#define TILT_UNIT 0.05
 
 static double to_coordinate(enum coordinate c, double least_gamma, double value)
 {
@@ -40,6 +46,9 @@ static double to_coordinate(enum coordinate c, double least_gamma, double value)
 		return (value - 1) / (value + 1);
 	case COORDINATE_K:
 		return value / (value + 1);
+	case COORDINATE_TILT_X:
+	case COORDINATE_TILT_Y:
+		return asinh(value / TILT_UNIT);
 	default:
 		return value;
 	}
@@ -59,6 +68,9 @@ static double from_coordinate(enum coordinate c, double least_gamma, double x)
 		return (1 + x) / (1 - x);
 	case COORDINATE_K:
 		return x / (1 - x);
+	case COORDINATE_TILT_X:
+	case COORDINATE_TILT_Y:
+		return TILT_UNIT * sinh(x);
 	default:
 		return x;
 	}
@@ -76,7 +88,7 @@ static const struct axis scan_gamma = {{1e-4, 1e-3, 0.005, 0.015, 0.04, 0.1, 0.2
 static const struct axis scan_ior = {{1.03, 1.15, 1.35, 1.8, 3, 8, 60}, 7};
 static const struct axis scan_k = {{0, 0.5, 2, 6, 30}, 5};
 /* The scan is of isotropic shapes, unless the roughnesses are fixed. */
-static const struct axis scan_stretch = {{0}, 1};
+static const struct axis scan_stretch = {{0}, 1}, scan_tilt = {{0}, 1};
 /* Of the grazing term and the second lobe there is no scan: fit.c knows where to begin. */
 static const struct axis scan_grazing = {{5}, 1};
 static const struct axis scan_second = {{0.3}, 1}, scan_second_gamma = {{3}, 1};
@@ -172,6 +184,10 @@ void space_init(struct space *s, const struct fit_options *o, const struct ndf_c
 		add_dim(s, COORDINATE_K, 0, FIT_K_MAX, &scan_k);
 	if (o->anisotropic)
 		add_axes(s, o);
+	if (o->anisotropic && ndf_has_tilt(class)) {
+		add_dim(s, COORDINATE_TILT_X, -FIT_TILT_MAX, FIT_TILT_MAX, &scan_tilt);
+		add_dim(s, COORDINATE_TILT_Y, -FIT_TILT_MAX, FIT_TILT_MAX, &scan_tilt);
+	}
 	add_grazing(s, o);
 	if (o->lobes > 1)
 		add_second(s, class);
@@ -196,7 +212,9 @@ static bool is_of_pair(enum coordinate c)
 
 bool space_is_of_axes(const struct space *s, int d)
 {
-	return is_of_pair(s->coordinate[d]) || s->coordinate[d] == COORDINATE_STRETCH;
+	const enum coordinate c = s->coordinate[d];
+
+	return is_of_pair(c) || c == COORDINATE_STRETCH || c == COORDINATE_TILT_X || c == COORDINATE_TILT_Y;
 }
 
 struct shape space_shape(const struct space *s, const double x[])
