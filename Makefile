@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Targets: all (default), check, check-long, check-docs, demo, bench, figures, stability, asan, ubsan, tsan, lint, architecture,
+# Targets: all (default), check, check-long, check-docs, demo, bench, figures, tables, stability, asan, ubsan, tsan, lint, architecture,
 # valgrind, compilers, fuzz, killtest, export-table, page-tools, install, uninstall, dist, deb, clean. Those that check or show something install what is
 # missing first.
 VERSION := 0.2.0
@@ -192,6 +192,12 @@ figures: setup
 	@$(MAKE) --no-print-directory all $(BUILD)/tests/figures
 	@FITS='$(FITS)' MERL='$(MERL)' scripts/figures.sh $(BUILD)
 
+# docs/tables.md from the measured tables in MERL=DIR: an hour. WORK=DIR keeps what it is made from; SOME=DIR has those tables that
+# richer models are fitted to, where not all are.
+tables: setup
+	@$(MAKE) --no-print-directory all
+	@scripts/tables.sh $(BUILD)/stdfit '$(MERL)' $(if $(WORK),'$(WORK)' $(if $(SOME),'$(SOME)'))
+
 # The mathematics over the extremes of its domain: BUILD/stability.csv and a summary; then fits of hard tables. Fails where
 # it finds something.
 stability: setup
@@ -224,6 +230,6 @@ clean:
 
 include scripts/install.mk
 
-.PHONY: all setup check check-long check-docs check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo export-table page-tools clean
+.PHONY: all setup check check-long check-docs check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures tables stability demo export-table page-tools clean
 
 -include $(lib_objects:.o=.d) $(BUILD)/fit/commands/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))

@@ -78,8 +78,10 @@ static void parameters_come_back(void **state)
 		}
 		if (kind == BURLEY)
 			check_rel(r.model.grazing, 3, 0.1, "exponent");
-		if (kind == TWO_LOBES)
+		if (kind == TWO_LOBES) {
 			check_rel(r.model.second.sigma_x, 0.6, 0.03, "sigma of the second lobe");
+			assert_false(r.undetermined & (BOUND_SECOND_SIGMA | BOUND_SECOND_GAMMA));
+		}
 		measurement_free(&measurement);
 	}
 }
@@ -193,6 +195,23 @@ static void rows_bring_models_back(void **state)
 	}
 }
 
+/* Where the data are of one lobe, what noise makes of a second has no shape that they determine. */
+static void a_second_lobe_of_noise_is_undetermined(void **state)
+{
+	const struct cook_torrance truth = make_model("ggx", 0.2, 2, 1.5);
+	struct measurement measurement = make_scattered(&truth, 30000, 0.02, 5);
+	struct fit_options o = options_for("ggx");
+
+	(void)state;
+	o.lobes = 2;
+	o.ior = 1.5;
+	const struct fit_result r = run(&measurement, &o);
+
+	assert_true(cook_torrance_has_second(&r.model));
+	assert_true(r.undetermined & BOUND_SECOND_SIGMA);
+	measurement_free(&measurement);
+}
+
 /* Of the whole family the model that made the data is chosen, and one richer only where richer is let in. */
 static void within_finds_the_model_of_the_data(void **state)
 {
@@ -259,6 +278,7 @@ int main(void)
 		cmocka_unit_test(two_lobes_share_the_bound_of_one),
 		cmocka_unit_test(a_richer_model_never_loses),
 		cmocka_unit_test(rows_bring_models_back),
+		cmocka_unit_test(a_second_lobe_of_noise_is_undetermined),
 		cmocka_unit_test(within_finds_the_model_of_the_data),
 		cmocka_unit_test(what_does_not_go_together_is_refused),
 	};

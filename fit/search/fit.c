@@ -668,6 +668,20 @@ static enum status fit_without_grazing(const struct run *run, const struct ndf_c
 	return status;
 }
 
+/* Of two lobes: where one does as well, the second may have any shape; where none of the grazing term does, that any exponent. */
+static unsigned open_beside(const struct run *run, const struct ndf_class *class, const struct fit_result *r,
+			    double one_lobe, double no_grazing)
+{
+	const double limit = undetermined_limit(r->error);
+	unsigned bits = 0;
+
+	if (run->options->lobes > 1 && cook_torrance_has_second(&r->model) && one_lobe <= limit)
+		bits |= BOUND_SECOND_SIGMA | (ndf_has_gamma(class) ? (unsigned)BOUND_SECOND_GAMMA : 0u);
+	if (isnan(run->options->grazing_exponent) && no_grazing <= limit)
+		bits |= BOUND_GRAZING;
+	return bits;
+}
+
 /* A richer model: the simpler one first. With one lobe there is a scan of its own as well. A richer model never loses. */
 static enum status fit_richer(const struct run *run, const struct ndf_class *class,
 			      const struct fit_options *simpler_options, struct nested *nested, struct fit_result *r)
@@ -726,6 +740,7 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 		r->evaluations += other.evaluations;
 		r->passes += other.passes;
 	}
+	r->undetermined |= open_beside(run, class, r, simpler.error, two_ways ? other.error : INFINITY);
 	r->seconds = simpler.seconds + search_clock() - begin;
 	return STATUS_OK;
 }
@@ -815,7 +830,7 @@ static enum status find_undetermined(const struct run *run, const struct ndf_cla
 
 	if (has_sparse_lambda(run, class))
 		options.gamma = m->ndf.gamma; /* the other values have been fitted */
-	/* Of two lobes no scan has been made, over all the shapes of both. */
+	/* Of two lobes no scan has been made, over all the shapes of both: open_beside() tells what is known. */
 	if (!options.algorithm && options.lobes < 2)
 		status = undetermined_find(&run->multiresolution, &options, class, &run->minima[index_of(class)], &best,
 					   r->error, settled, &found, &r->evaluations);
