@@ -128,7 +128,9 @@ const struct option_spec option_specs[] = {
 	{"sigma", 0, KIND_SIGMA, SEARCHES, RECORDED, "S|SX,SY", "fix the roughness; with --anisotropic along both axes",
 	 AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
 	{"anisotropic", 0, KIND_ON, AXES | SOURCES, RECORDED_ANISOTROPIC, NULL,
-	 "scattered entries: search sigma_x, sigma_y and the angle of their axes, too, from the isotropic fit on",
+	 "scattered entries: search sigma_x, sigma_y and the angle of their axes, too, from the isotropic fit on; of "
+	 "the "
+	 "ellipsoid also its tilt",
 	 AT(fit.anisotropic), 0, 0},
 	{"angle", 0, KIND_NUMBER, AXES, RECORDED_ANISOTROPIC, "DEG",
 	 "with --anisotropic: fix the azimuth of the axis of sigma_x", AT(fit.angle), -360, 360},
@@ -209,6 +211,8 @@ const struct option_spec option_specs[] = {
 	{"seed", 0, KIND_SEED, SYNTH, NOT_RECORDED, "N", "seed of the noise", AT(fit.seed), 0, 0},
 	{"sigma", 0, KIND_WORD, NDF | SAMPLE, NOT_RECORDED, "SX[,SY]", "roughness, along x and y if the NDF has two",
 	 AT(sigma_words), 0, 0},
+	{"angle", 0, KIND_NUMBER, NDF | SAMPLE, NOT_RECORDED, "DEG", "azimuth of the first axis; 0 if not given",
+	 AT(fit.angle), -360, 360},
 	{"gamma", 0, KIND_WORD, NDF | SAMPLE, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann)",
 	 AT(gamma_words), 0, 0},
 	{"params", 0, KIND_WORD, NDF | SAMPLE | MODEL | SOURCES, NOT_RECORDED, "P",

@@ -523,7 +523,8 @@ static int check_lambda(const struct options *options)
 static int check_specular(const struct options *options)
 {
 	const struct fit_options *fit = &options->fit;
-	static const char *const of_lobe[] = {"sigma", "gamma", "ior", "gaf", "fresnel", "lambda", "starts"};
+	static const char *const of_lobe[] = {"sigma",   "gamma",  "ior",    "gaf",
+					      "fresnel", "lambda", "starts", "intervals"};
 	for (size_t i = 0; i < sizeof of_lobe / sizeof *of_lobe; i++)
 		if (!fit->specular && options_given(options, of_lobe[i]))
 			return options_usage(options->command, "--%s means nothing with --no-specular", of_lobe[i]);

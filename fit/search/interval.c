@@ -342,8 +342,11 @@ static void add_interval(struct interval_list *list, const struct interval *inte
 	if (list->n == INTERVALS_MAX)
 		return;
 	list->at[list->n++] = *interval;
-	while (unite_one(list))
-		continue;
+	bool united;
+
+	do
+		united = unite_one(list);
+	while (united);
 	if (list->n > 1)
 		qsort(&list->at[1], (size_t)list->n - 1, sizeof list->at[0], by_place);
 }
