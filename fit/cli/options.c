@@ -497,6 +497,14 @@ static bool has_tabulated(const struct fit_options *fit)
 }
 
 /* Combinations in which some option would be ignored, or nothing could come out. */
+/* Only a conductor's n may be below 1. */
+static int low_index(const struct options *options)
+{
+	return options_usage(options->command,
+			     "invalid value for --ior: below %g it needs --fresnel conductor, found %g", FIT_IOR_MIN,
+			     options->fit.ior);
+}
+
 int options_check_fit(const struct options *options)
 {
 	const struct fit_options *fit = &options->fit;
@@ -516,6 +524,8 @@ int options_check_fit(const struct options *options)
 	if (!fresnel_has_ior(fit->fresnel) && options_given(options, "ior"))
 		return options_usage(options->command, "--ior means nothing with --fresnel %s",
 				     fresnel_name(fit->fresnel));
+	if (fit->ior < fit_ior_min(fit->fresnel))
+		return low_index(options);
 	if (!fit->grazing && options_given(options, "exponent"))
 		return options_usage(options->command, "--exponent means nothing without --diffuse burley");
 	if (options_given(options, "gamma") && !any_has_gamma(fit))
@@ -672,6 +682,8 @@ static int check_model(const struct options *options)
 	if (!fresnel_has_ior(options->fit.fresnel) && options_given(options, "ior"))
 		return options_usage(command, "--ior means nothing with --fresnel %s",
 				     fresnel_name(options->fit.fresnel));
+	if (options->fit.ior < fit_ior_min(options->fit.fresnel))
+		return low_index(options);
 	if (isnan(options->fit.sigma_y) && options_given(options, "angle"))
 		return options_usage(command, "--angle needs --sigma SX,SY");
 	if (options->fit.fresnel != FRESNEL_CONDUCTOR && options_given(options, "k"))

@@ -11,6 +11,8 @@
 /* struct shape - what a fit searches: the parameters in which the model is not linear. */
 struct shape {
 	double sigma, gamma, ior, k;       /* sigma: sqrt(sigma_x sigma_y) where they differ */
+	double channel_ior[MERL_CHANNELS]; /* of options->per_channel_ior, in place of ior and k; else 0 */
+	double channel_k[MERL_CHANNELS];
 	double stretch;                    /* ln(sigma_x/sigma_y); 0: isotropic */
 	double angle;                      /* of the axis of sigma_x, degrees */
 	double second_sigma, second_gamma; /* of the second lobe */
@@ -65,7 +67,8 @@ void linear_set_model(const struct linear *linear, const struct fit_options *opt
 /* An error that no fit can have (all coefficients 0 gives 1), finite as nlopt wants it. */
 #define OBJECTIVE_NO_FIT 1e3
 
-enum { OBJECTIVE_LOBES = 2 };
+/* Where channels have an F of their own, the lobe of green and of blue stand behind the terms. */
+enum { OBJECTIVE_LOBES = 2, OBJECTIVE_ARRAYS = KERNEL_TERMS + MERL_CHANNELS - 1 };
 
 struct objective {
 	const struct sample_set *table;
@@ -81,13 +84,14 @@ struct objective {
 		bool given;             /* objective_use() has said which D and G1 */
 		struct shape tabulated; /* the shape that masking and D stand for, ior and k aside */
 	} lobe[OBJECTIVE_LOBES];
-	struct scattered_lobe *scattered; /* for scattered entries, in their place: one a term */
+	int n_arrays;                     /* of `term` and `row`: one a term, and those of green and blue */
+	struct scattered_lobe *scattered; /* for scattered entries, in their place: one an array */
 	struct masking grazing;           /* the grazing term's function of a direction, */
 	double grazing_exponent;          /* for this exponent */
 	struct cook_torrance optics;      /* F of the shape, and G */
 	bool is_exact;                    /* scattered entries, few enough to have the terms at each without tables */
-	float *term[KERNEL_TERMS];        /* a float a sample; [0] is not used: it is the weight */
-	float (*row)[MERL_ROWS];          /* one a term */
+	float *term[OBJECTIVE_ARRAYS];    /* a float a sample; [0] is not used: it is the weight */
+	float (*row)[MERL_ROWS];          /* one an array */
 	struct kernel_sums (*sums)[MERL_CHANNELS]; /* one set a block */
 	long passes;                               /* over the table, so far */
 	struct linear start;                       /* where the next inner solve begins: the last one's end */

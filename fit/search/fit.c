@@ -92,6 +92,12 @@ static bool on_bound(double value, double low, double high)
 	return value <= low * (1 + 1e-4) || value >= high * (1 - 1e-4);
 }
 
+static bool index_on_bound(const struct fit_options *o, double n)
+{
+	return o->fresnel == FRESNEL_CONDUCTOR ? on_bound(n, FIT_CONDUCTOR_IOR_MIN, FIT_IOR_MAX)
+					       : on_bound(n - 1, FIT_IOR_MIN - 1, FIT_IOR_MAX - 1);
+}
+
 static unsigned bounds_of(const struct fit_result *r, const struct fit_options *o)
 {
 	const struct cook_torrance *m = &r->model;
@@ -110,8 +116,7 @@ static unsigned bounds_of(const struct fit_result *r, const struct fit_options *
 		if (gamma && isnan(o->gamma) &&
 		    on_bound(m->ndf.gamma - gamma->min, gamma->search_min - gamma->min, gamma->search_max - gamma->min))
 			bits |= BOUND_GAMMA;
-		if (fresnel_has_ior(o->fresnel) && isnan(o->ior) &&
-		    on_bound(m->n - 1, FIT_IOR_MIN - 1, FIT_IOR_MAX - 1))
+		if (fresnel_has_ior(o->fresnel) && isnan(o->ior) && index_on_bound(o, m->n))
 			bits |= BOUND_IOR;
 		if (o->fresnel == FRESNEL_CONDUCTOR && on_bound(m->k, 0, FIT_K_MAX))
 			bits |= BOUND_K;

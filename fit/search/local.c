@@ -63,12 +63,12 @@ static double evaluate(unsigned dims, const double *x, double *gradient, void *d
 enum status local_descend(const struct space *space, struct objective *o, const struct local_settings *settings,
 			  local_report *report, void *user, struct space_point *point, bool *limited)
 {
-	static const double spacing[] = {[COORDINATE_SIGMA] = 0.35,       [COORDINATE_GAMMA] = 1.0,
-					 [COORDINATE_IOR] = 0.1,          [COORDINATE_K] = 0.15,
-					 [COORDINATE_STRETCH_COS] = 0.35, [COORDINATE_STRETCH_SIN] = 0.35,
-					 [COORDINATE_STRETCH] = 0.35,     [COORDINATE_ANGLE] = 15,
-					 [COORDINATE_GRAZING] = 0.4,      [COORDINATE_SECOND_SIGMA] = 0.35,
-					 [COORDINATE_SECOND_GAMMA] = 1.0};
+	static const double spacing[] = {
+		[COORDINATE_SIGMA] = 0.35,       [COORDINATE_GAMMA] = 1.0,        [COORDINATE_IOR] = 0.1,
+		[COORDINATE_K] = 0.15,           [COORDINATE_LENGTH] = 0.1,       [COORDINATE_PHASE] = 0.35,
+		[COORDINATE_STRETCH_COS] = 0.35, [COORDINATE_STRETCH_SIN] = 0.35, [COORDINATE_STRETCH] = 0.35,
+		[COORDINATE_ANGLE] = 15,         [COORDINATE_GRAZING] = 0.4,      [COORDINATE_SECOND_SIGMA] = 0.35,
+		[COORDINATE_SECOND_GAMMA] = 1.0};
 	const unsigned dims = (unsigned)space->dims;
 	struct local local = {
 		.space = space, .objective = o, .settings = settings, .report = report, .user = user, .best = *point};

@@ -59,9 +59,9 @@ static enum status check_ranges(const struct fit_options *o, struct error *error
 				 FIT_SIGMA_MAX, o->sigma_y);
 	if (isinf(o->angle))
 		return error_set(error, STATUS_DOMAIN, "expected a finite angle, found %g", o->angle);
-	if (!free_or_within(o->ior, FIT_IOR_MIN, FIT_IOR_MAX))
-		return error_set(error, STATUS_DOMAIN, "expected ior in [%g, %g], found %g", FIT_IOR_MIN, FIT_IOR_MAX,
-				 o->ior);
+	if (!free_or_within(o->ior, fit_ior_min(o->fresnel), FIT_IOR_MAX))
+		return error_set(error, STATUS_DOMAIN, "expected ior in [%g, %g], found %g", fit_ior_min(o->fresnel),
+				 FIT_IOR_MAX, o->ior);
 	if (o->gamma <= 0)
 		return error_set(error, STATUS_DOMAIN, "expected gamma above 0, found %g", o->gamma);
 	if (o->starts < 0 || o->starts > FIT_STARTS_MAX)

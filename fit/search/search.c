@@ -425,7 +425,7 @@ static int add_between(const struct search *s, const struct scan_minima *minima,
 	const double enough = BETWEEN * (count > 0 ? point[0].error : 0);
 
 	for (int d = 0; d < s->space.dims; d++)
-		for (int i = 0; s->space.coordinate[d] == COORDINATE_IOR && i + 1 < s->space.axis[d].count; i++) {
+		for (int i = 0; space_is_of_ior(&s->space, d) && i + 1 < s->space.axis[d].count; i++) {
 			const struct space_point *low = &minima->slice[d][i], *high = low + 1;
 			const struct space_point *better = low->error < high->error ? low : high;
 
