@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Metals: published indices come back from measurements of models with them, and what does not determine them is told. */
+#include "fit/results/result.h"
 #include "fit/search/options_check.h"
 #include "make_scattered.h"
 #include "run_fit.h"
@@ -61,6 +62,39 @@ static void published_indices_come_back(void **state)
 		}
 }
 
+static struct cook_torrance coloured(const struct metal *metal)
+{
+	struct cook_torrance model = metal_of(metal, 0);
+
+	model.per_channel_ior = true;
+	memcpy(model.channel_n, metal->n, sizeof metal->n);
+	memcpy(model.channel_k, metal->k, sizeof metal->k);
+	return model;
+}
+
+static void published_indices_of_each_channel_come_back(void **state)
+{
+	(void)state;
+	for (size_t m = 0; m < METALS; m++) {
+		const struct metal *metal = &metals[m];
+		const struct cook_torrance truth = coloured(metal);
+		struct measurement measurement = make_scattered(&truth, 3000, 0, 5);
+		struct fit_options o = options_of_metal("ggx");
+		struct fit_result r, shared;
+
+		run_fit(&measurement, &o, &shared);
+		o.per_channel_ior = true;
+		run_fit(&measurement, &o, &r);
+		assert_true(r.error < 2e-5 && shared.error > 10 * r.error);
+		for (int c = 0; c < 3; c++) {
+			check_index(metal->name, r.model.channel_n[c], r.model.channel_k[c], metal->n[c], metal->k[c]);
+			check_rel(r.model.ks[c], 0.9, 1e-3, "ks");
+		}
+		assert_int_equal(r.undetermined & ~(unsigned)(BOUND_KD_R | BOUND_KD_G | BOUND_KD_B), 0);
+		measurement_free(&measurement);
+	}
+}
+
 /* Noise of a tenth leaves n open: half or twice of it does as well, which a fit with n fixed there shows. */
 static void what_the_data_leave_open_is_told(void **state)
 {
@@ -83,6 +117,82 @@ static void what_the_data_leave_open_is_told(void **state)
 	measurement_free(&measurement);
 }
 
+/* Data of another model than either: who asks for an index of each channel never ends above those who do not. */
+static void an_index_for_each_channel_never_loses(void **state)
+{
+	const struct cook_torrance truth = make_model("std", 0.2, 2.5, 1.5);
+	struct measurement measurement = make_scattered(&truth, 2000, 0.2, 3);
+	struct fit_options o = options_of_metal("std");
+	struct fit_result shared, r[2];
+
+	(void)state;
+	run_fit(&measurement, &o, &shared);
+	o.per_channel_ior = true;
+	o.ndf[0] = ndf_find("ggx");
+	o.ndf[1] = ndf_find("std");
+	o.n_ndf = 2;
+	run_fit(&measurement, &o, r);
+	assert_true(r[1].error <= shared.error && r[1].error <= r[0].error);
+	/* As many names as there are parameters left open. */
+	assert_int_equal(r[1].undetermined & (BOUND_IOR | BOUND_K), 0);
+	measurement_free(&measurement);
+}
+
+static void rows_bring_models_back(void **state)
+{
+	const struct result_source source = {.path = "x", .input = "", .options = ""};
+	struct cook_torrance truth = coloured(&metals[1]), model;
+	struct measurement measurement = make_scattered(&truth, 1000, 0.1, 7);
+	struct csv_table table = csv_table_make(result_columns, RESULT_COLUMNS);
+	struct fit_options o = options_of_metal("ggx"), read = options_for("ggx");
+	struct fit_result r;
+	struct error error;
+	struct pwl *pwl;
+	unsigned seed = 9;
+
+	(void)state;
+	o.per_channel_ior = true;
+	o.sigma = 0.2;
+	run_fit(&measurement, &o, &r);
+	assert_int_equal(result_add(&table, &source, &o, &r), STATUS_OK);
+	assert_string_equal(table.row[0][RESULT_IOR], "");
+	assert_int_equal(result_model(table.row[0], &model, &read, &pwl, &error), STATUS_OK);
+	assert_true(read.per_channel_ior);
+	for (int i = 0; i < 50; i++) {
+		const struct vec3 wi = random_direction(&seed), wo = random_view(&truth, wi, &seed);
+		double want[3], got[3];
+
+		cook_torrance_f(&r.model, wi, wo, want);
+		cook_torrance_f(&model, wi, wo, got);
+		for (int c = 0; c < 3; c++)
+			assert_true(want[c] == got[c]);
+	}
+	result_model_free(&model, pwl);
+	csv_table_free(&table);
+	measurement_free(&measurement);
+}
+
+static void what_does_not_go_with_an_index_for_each_channel_is_refused(void **state)
+{
+	struct fit_options o = options_of_metal("ggx");
+	struct error error;
+
+	(void)state;
+	o.per_channel_ior = true;
+	assert_int_equal(fit_options_rule(&o, &error), FIT_RULE_KEPT);
+	o.gray = true;
+	assert_int_equal(fit_options_rule(&o, &error), FIT_RULE_RICHER);
+	o.gray = false;
+	o.ior = 0.5;
+	assert_int_equal(fit_options_rule(&o, &error), FIT_RULE_RICHER);
+	o.ior = NAN;
+	o.lobes = 2;
+	assert_int_equal(fit_options_rule(&o, &error), FIT_RULE_RICHER);
+	o.lobes = 1;
+	o.fresnel = FRESNEL_DIELECTRIC;
+	assert_int_equal(fit_options_rule(&o, &error), FIT_RULE_RICHER);
+}
+
 static void n_below_1_is_of_conductors(void **state)
 {
 	struct fit_options o = options_of_metal("ggx");
@@ -102,9 +212,18 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(published_indices_come_back),
-		cmocka_unit_test(what_the_data_leave_open_is_told),
+		cmocka_unit_test(rows_bring_models_back),
+		cmocka_unit_test(what_does_not_go_with_an_index_for_each_channel_is_refused),
 		cmocka_unit_test(n_below_1_is_of_conductors),
 	};
+	const struct CMUnitTest long_tests[] = {
+		cmocka_unit_test(published_indices_of_each_channel_come_back),
+		cmocka_unit_test(what_the_data_leave_open_is_told),
+		cmocka_unit_test(an_index_for_each_channel_never_loses),
+	};
+	const int failed = cmocka_run_group_tests(tests, NULL, NULL);
 
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	if (failed || case_step(2) > 1)
+		return failed;
+	return cmocka_run_group_tests_name("conductor_long", long_tests, NULL, NULL);
 }

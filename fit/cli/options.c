@@ -526,6 +526,10 @@ int options_check_fit(const struct options *options)
 				     fresnel_name(fit->fresnel));
 	if (fit->ior < fit_ior_min(fit->fresnel))
 		return low_index(options);
+	if (options_index_per_channel(options))
+		return options_usage(options->command, "--ior R,G,B gives a model, a fit takes one number");
+	if (fit->per_channel_ior && fit->fresnel != FRESNEL_CONDUCTOR)
+		return options_usage(options->command, "--per-channel-ior needs --fresnel conductor");
 	if (!fit->grazing && options_given(options, "exponent"))
 		return options_usage(options->command, "--exponent means nothing without --diffuse burley");
 	if (options_given(options, "gamma") && !any_has_gamma(fit))
@@ -660,6 +664,11 @@ static int check_terms(const struct options *options)
 	return -1;
 }
 
+bool options_index_per_channel(const struct options *options)
+{
+	return options_given(options, "ior") && isnan(options->fit.ior);
+}
+
 /* An option for a term that the model does not have. */
 static int check_model(const struct options *options)
 {
@@ -684,6 +693,8 @@ static int check_model(const struct options *options)
 				     fresnel_name(options->fit.fresnel));
 	if (options->fit.ior < fit_ior_min(options->fit.fresnel))
 		return low_index(options);
+	if (options->fit.fresnel != FRESNEL_CONDUCTOR && options_index_per_channel(options))
+		return options_usage(command, "--ior R,G,B needs --fresnel conductor");
 	if (isnan(options->fit.sigma_y) && options_given(options, "angle"))
 		return options_usage(command, "--angle needs --sigma SX,SY");
 	if (options->fit.fresnel != FRESNEL_CONDUCTOR && options_given(options, "k"))
@@ -700,7 +711,13 @@ int options_model(const struct options *options, struct cook_torrance *model)
 	*model = (struct cook_torrance){.gaf = fit->criterion.gaf,
 					.fresnel = fit->fresnel,
 					.n = isnan(fit->ior) ? 1.5 : fit->ior,
-					.k = options->k};
+					.k = options->k[0]};
+	model->per_channel_ior =
+		options_index_per_channel(options) || options->k[1] != options->k[0] || options->k[2] != options->k[0];
+	for (int c = 0; c < MERL_CHANNELS && model->per_channel_ior; c++) {
+		model->channel_n[c] = isnan(fit->ior) && options_given(options, "ior") ? options->ior[c] : model->n;
+		model->channel_k[c] = options->k[c];
+	}
 	memcpy(model->kd, options->kd, sizeof model->kd);
 	memcpy(model->ks, options->ks, sizeof model->ks);
 	const double sigma = isnan(fit->sigma) ? 1 : fit->sigma, gamma = isnan(fit->gamma) ? 2 : fit->gamma;

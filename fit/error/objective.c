@@ -153,6 +153,16 @@ struct shape shape_of(const struct cook_torrance *model)
 	return shape;
 }
 
+void shape_spread_index(struct shape *shape)
+{
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		shape->channel_ior[c] = shape->ior;
+		shape->channel_k[c] = shape->k;
+	}
+	shape->ior = NAN;
+	shape->k = 0;
+}
+
 enum status shape_ndf(const struct shape *shape, const struct ndf_class *class, enum lambda_form lambda,
 		      struct ndf *ndf)
 {

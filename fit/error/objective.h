@@ -19,8 +19,9 @@ struct shape {
 	double grazing;                    /* exponent of the grazing term */
 };
 
-/* shape_of - the shape of a model. */
+/* shape_of - the shape of a model; shape_spread_index - gives each channel the ior and k that all share. */
 struct shape shape_of(const struct cook_torrance *model);
+void shape_spread_index(struct shape *shape);
 
 /* shape_ndf - the distribution of a shape, with Lambda in the given form where the class has it, else exact.
  * Returns STATUS_DOMAIN where the class does not take the shape, or the form not its gamma.

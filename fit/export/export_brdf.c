@@ -127,7 +127,7 @@ static void write_sliders(struct glsl *glsl)
 		slider(glsl, "gamma_shape", ndf->gamma, is_named(ndf, "t-family") ? ndf->param[2] + 1e-4 : 1.5001, 10,
 		       1000);
 	if (model->fresnel != FRESNEL_NONE)
-		slider(glsl, "n", model->n, 1.0001, 3, 100);
+		slider(glsl, "n", model->n, fit_ior_min(model->fresnel), 3, 100);
 	if (model->fresnel == FRESNEL_CONDUCTOR)
 		slider(glsl, "k", model->k, 0, 10, 100);
 }
@@ -638,10 +638,10 @@ static enum status brdf_write(const struct export *export, FILE *file, struct er
 static enum status brdf_prepare(struct export *export, struct error *error)
 {
 	if (cook_torrance_is_rich(&export->model))
-		return error_set(
-			error, STATUS_UNSUPPORTED,
-			"the shader has neither a second lobe nor a diffuse term of grazing directions nor f82 "
-			"(--format bsdf, merl and json have every model)");
+		return error_set(error, STATUS_UNSUPPORTED,
+				 "the shader has neither a second lobe nor a diffuse term of grazing directions nor "
+				 "f82 nor an index for each channel "
+				 "(--format bsdf, merl and json have every model)");
 	return export_as_it_is(
 		export, "the model itself, in 32-bit floats (relative error 3e-6, in a tail where D is 1e-5 of its "
 			"peak 4e-5)");

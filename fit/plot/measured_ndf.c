@@ -19,20 +19,20 @@ struct reading {
 	double min_cos;
 };
 
-/* What a unit of D and of ks adds to the model. */
-static double lobe_per_D(const struct reading *r, struct vec3 wi, struct vec3 wo, double F)
+/* What a unit of D, of ks and of F adds to the model. */
+static double lobe_per_D(const struct reading *r, struct vec3 wi, struct vec3 wo)
 {
 	const struct cook_torrance *model = r->model;
 	const double cosines = wi.z * wo.z;
 
 	if (model->gaf == GAF_V_GROOVE)
-		return cook_torrance_from_G(F, gaf_G(GAF_V_GROOVE, &model->ndf, wi, wo), cosines);
-	return cook_torrance_from_G1(model->gaf, F, masking_at(&r->masking, masking_q(wi)),
+		return cook_torrance_from_G(1, gaf_G(GAF_V_GROOVE, &model->ndf, wi, wo), cosines);
+	return cook_torrance_from_G1(model->gaf, 1, masking_at(&r->masking, masking_q(wi)),
 				     masking_at(&r->masking, masking_q(wo)), cosines);
 }
 
 /* The values of D that entry (i, j, k) gives, one per channel; returns how many. */
-static size_t entry_values(const struct reading *r, int i, int j, int k, double F, struct weighted_value *asked)
+static size_t entry_values(const struct reading *r, int i, int j, int k, const double F[], struct weighted_value *asked)
 {
 	const struct measurement *measurement = r->measurement;
 	const size_t at = measurement_at(measurement->n_phi_d, i, j, k);
@@ -42,9 +42,9 @@ static size_t entry_values(const struct reading *r, int i, int j, int k, double 
 	entries_dirs(&r->entries, i, j, k, &wi, &wo);
 	if (wi.z < r->min_cos || wo.z < r->min_cos || isnan(measurement->value[0][at]))
 		return 0;
-	const double lobe = lobe_per_D(r, wi, wo, F);
+	const double lobe = lobe_per_D(r, wi, wo);
 	for (int c = 0; c < MERL_CHANNELS; c++) {
-		const double per_D = r->model->ks[c] * lobe;
+		const double per_D = r->model->ks[c] * (lobe * F[c]);
 		const double wanted = (double)measurement->value[c][at] - r->model->kd[c] / M_PI;
 
 		if (per_D > 0)
@@ -58,7 +58,10 @@ static double read_row(const struct reading *r, int i)
 	size_t n = 0;
 
 	for (int j = 0; j <= THETA_D_MAX; j++) {
-		const double F = fresnel_F(r->model->fresnel, r->entries.theta[j].cos_d, r->model->n, r->model->k);
+		double F[MERL_CHANNELS];
+
+		for (int c = 0; c < MERL_CHANNELS; c++)
+			F[c] = cook_torrance_F(r->model, c, r->entries.theta[j].cos_d);
 
 		for (int k = 0; k < r->measurement->n_phi_d; k++)
 			n += entry_values(r, i, j, k, F, r->value + n);

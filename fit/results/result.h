@@ -72,6 +72,13 @@ enum result_column {
 	RESULT_KS2_B,
 	RESULT_SIGMA2,
 	RESULT_GAMMA2,
+	/* Of conductors with an index for each channel, else empty */
+	RESULT_IOR_R,
+	RESULT_IOR_G,
+	RESULT_IOR_B,
+	RESULT_K_R,
+	RESULT_K_G,
+	RESULT_K_B,
 	RESULT_COLUMNS,
 	RESULT_LATER = RESULT_SIGMA_X /* from here on columns that earlier tables lack: what is not there is empty */
 };

@@ -29,17 +29,17 @@ struct found {
 	int starts, starts_agreeing; /* local searches on the coarsest table; those within 0.1 % of the best there */
 	bool limited;                /* a limit on evaluations stopped the last local search */
 	long evaluations;
-	long passes;               /* over the full table */
-	struct scan_minima minima; /* search_run()'s, if it had anything to search */
+	long passes; /* over the full table */
 };
 
 /* search_clock - seconds of a clock that only runs forward. */
 double search_clock(void);
 
-/* search_run - minimises E over the free parameters among sigma, gamma, ior and k, wherever its minimum is.
+/* search_run - minimises E over the free parameters among sigma, gamma, ior and k, wherever its minimum is. *minima is left as it
+ * is where there is nothing to search; it is too large for the stack of a thread.
  * Errors:  STATUS_NO_MEMORY, STATUS_INTERRUPTED */
 MUST_CHECK enum status search_run(const struct multiresolution *multiresolution, const struct fit_options *options,
-				  const struct ndf_class *class, struct found *found);
+				  const struct ndf_class *class, struct scan_minima *minima, struct found *found);
 
 /* search_estimate - about what search_run() would end with, from the two smallest samples alone: *error is within 0.3 % of
  * it as a rule, for a quarter of the work.

@@ -428,6 +428,10 @@ static unsigned bit_of(const struct space *space, int d)
 				       [COORDINATE_SECOND_SIGMA] = BOUND_SECOND_SIGMA,
 				       [COORDINATE_SECOND_GAMMA] = BOUND_SECOND_GAMMA};
 
+	if (space->per_channel && space->coordinate[d] == COORDINATE_LENGTH)
+		return (unsigned)BOUND_IOR_R << space->channel[d];
+	if (space->per_channel && space->coordinate[d] == COORDINATE_PHASE)
+		return (unsigned)BOUND_K_R << space->channel[d];
 	return bit[space->coordinate[d]];
 }
 

@@ -66,7 +66,9 @@ static int parameters(const struct fit_options *options, struct variant v)
 	n += ks + (isnan(options->sigma) ? 1 : 0) + (has_free_gamma(options, v.ndf) ? 1 : 0);
 	if (v.parts & PART_AXES)
 		n += (isnan(options->sigma_y) ? 1 : 0) + (isnan(options->angle) ? 1 : 0);
-	if (v.parts & PART_FRESNEL)
+	if ((v.parts & PART_FRESNEL) && options->per_channel_ior && (v.parts & PART_COLOUR_SPECULAR))
+		n += 2 * MERL_CHANNELS;
+	else if (v.parts & PART_FRESNEL)
 		n += (isnan(options->ior) ? 1 : 0) + (options->fresnel == FRESNEL_CONDUCTOR ? 1 : 0);
 	return n;
 }
@@ -128,6 +130,8 @@ static struct fit_options variant_options(const struct fit_options *options, str
 	}
 	if (o.specular && !(v.parts & PART_FRESNEL))
 		o.fresnel = FRESNEL_NONE;
+	/* Where ks has no colour, n and k have none. */
+	o.per_channel_ior &= o.fresnel == FRESNEL_CONDUCTOR && (v.parts & PART_COLOUR_SPECULAR);
 	return o;
 }
 
