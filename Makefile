@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Targets: all (default), check, check-long, check-docs, demo, bench, figures, stability, asan, ubsan, tsan, lint, architecture,
-# valgrind, compilers, fuzz, killtest, page-tools, install, uninstall, dist, deb, clean. Those that check or show something install what is
+# valgrind, compilers, fuzz, killtest, export-table, page-tools, install, uninstall, dist, deb, clean. Those that check or show something install what is
 # missing first.
 VERSION := 0.2.0
 
@@ -36,10 +36,12 @@ folders := src data_readers $(addprefix fit/,error search api results export ren
 lib_sources := $(filter-out fit/commands/main.c,$(foreach folder,$(folders),$(wildcard $(folder)/*.c)))
 lib_objects := $(lib_sources:%.c=$(BUILD)/%.o)
 
-# The kernel's loops want vectors; on x86-64 it is compiled a second time for AVX2 and chosen at run time
-# (AVX2=no: not so). No multiply-add in one: both give the same bits, so a fit ends at the same point on any machine.
+# The kernel's loops want vectors; on x86-64 it is compiled for AVX2 and AVX-512 too and chosen at run time (AVX2=no: not
+# so). No multiply-add in one: all give the same bits, so a fit ends at the same point on any machine.
 CFLAGS_kernel := -O3 -Wno-psabi
 CFLAGS_kernel_avx2 := $(CFLAGS_kernel) -mavx2 -DKERNEL_NAME=kernel_avx2
+CFLAGS_kernel_avx512 := $(CFLAGS_kernel) -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512 \
+	-ffp-contract=off -DKERNEL_NAME=kernel_avx512 -DKERNEL_LANES=16
 CFLAGS_metrics := -O3
 CFLAGS_octave_table := -O3
 CFLAGS_bench := -O3
@@ -54,7 +56,7 @@ ifneq ($(findstring x86_64,$(shell $(CC) -dumpmachine 2>/dev/null)),)
 AVX2 ?= yes
 endif
 ifeq ($(AVX2),yes)
-lib_objects += $(BUILD)/fit/error/kernel_avx2.o
+lib_objects += $(BUILD)/fit/error/kernel_avx2.o $(BUILD)/fit/error/kernel_avx512.o
 CFLAGS_kernel_pick := -DKERNEL_HAVE_AVX2
 endif
 test_sources := $(wildcard tests/test_*.c)
@@ -62,7 +64,7 @@ test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 # Attacks on inputs, outputs and memory, and fits of hard tables: half of the time of all tests.
 only_long := alloc convert export export_axes fetch free_form hostile hostile_names hostile_outputs outputs plot resample richer slurm stiff suspects terminal
 # Some cases in check, all in check-long: check.h, case_step().
-with_long_cases := conductor dielectric fit objective python random_walk scattered_fit
+with_long_cases := anisotropic conductor dielectric fit given_ndf interval objective python random_walk scattered_fit
 short_programs := $(filter-out $(only_long:%=$(BUILD)/tests/test_%),$(test_programs))
 long_programs := $(foreach t,$(only_long) $(with_long_cases),$(BUILD)/tests/test_$(t))
 
@@ -87,7 +89,7 @@ $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
 	$(call quiet,CC)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 
-$(BUILD)/fit/error/kernel_avx2.o: fit/error/kernel.c Makefile
+$(BUILD)/fit/error/kernel_avx2.o $(BUILD)/fit/error/kernel_avx512.o: fit/error/kernel.c Makefile
 	@mkdir -p $(@D)
 	$(call quiet,CC)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 
@@ -201,20 +203,27 @@ demo: setup
 	@$(MAKE) --no-print-directory all
 	@scripts/demo.sh $(BUILD)/stdfit
 
+# The STD fits of the files in MERL=DIR, exported in every format: BUILD/export_table.csv, and the tables of docs/export.md.
+export-table: setup
+	@$(MAKE) --no-print-directory all
+	@$(BUILD)/stdfit fit '$(MERL)' -q --ndf std --weight solid-angle -o $(BUILD)/export_fits.csv
+	@scripts/export_table.sh $(BUILD)/stdfit $(BUILD)/export_fits.csv >$(BUILD)/export_table.csv
+	@awk -f scripts/export_table.awk $(BUILD)/export_table.csv
+
 # The sessions, links and options of README.md and docs/ against the program; sessions of measured tables with MERL=DIR.
 check-docs: setup
 	@$(MAKE) --no-print-directory all library
 	@MERL='$(MERL)' scripts/check_docs.sh $(BUILD)/stdfit
 
-# What the browser test holds the page of a report against, beside its own eyes.
+# What the tests hold the page of a report and glTF exports against, beside their own eyes.
 page-tools:
-	npm install --no-audit --no-fund --prefix $(BUILD)/npm axe-core html-validate
+	npm install --no-audit --no-fund --prefix $(BUILD)/npm axe-core html-validate gltf-validator
 
 clean:
 	rm -rf $(BUILD)
 
 include scripts/install.mk
 
-.PHONY: all setup check check-long check-docs check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo page-tools clean
+.PHONY: all setup check check-long check-docs check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo export-table page-tools clean
 
 -include $(lib_objects:.o=.d) $(BUILD)/fit/commands/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))

@@ -8,11 +8,7 @@
 #include <string.h>
 
 /* Fine enough for a peak at theta_m = 0.1 degrees; they cost little. */
-enum { DENSITY_NODES = 1024, DENSITY_AZIMUTHS = 361, WARP_NODES = 256, BANDS = 3, WAVELENGTHS = 2 * BANDS };
-
-/* Three bands with steps at 495 and 590 nm. With these the spectrum of every colour of sRGB is nowhere negative; bands
- * of other limits, or spectra linear between three wavelengths, lack that. A gray one is flat. */
-static const float wavelength[WAVELENGTHS] = {380, 490, 500, 585, 595, 780};
+enum { DENSITY_NODES = 1024, DENSITY_AZIMUTHS = 361, WARP_NODES = 256, WAVELENGTHS = 2 * SPECTRUM_BANDS };
 
 static const double theta_last = 89.9 * M_PI / 180;
 
@@ -21,8 +17,8 @@ struct content {
 	size_t n_colours;  /* planes */
 	size_t n_azimuths; /* rows of the density */
 	float *phi, *theta, *density, *mean, *warp, *luminance,
-		*colour;                       /* mean: of the density, over the azimuths; two rows */
-	double from_rgb[BANDS][MERL_CHANNELS]; /* the values of the bands */
+		*colour; /* mean: of the density, over the azimuths; two rows */
+	struct spectrum_bands bands;
 };
 
 static bool allocate(struct content *content, const struct rgl_layout *layout)
@@ -51,35 +47,6 @@ static void free_content(struct content *content)
 	free(content->warp);
 	free(content->luminance);
 	free(content->colour);
-}
-
-/* The inverse of what the bands' spectra count in the channels. */
-static enum status find_bands(struct content *content)
-{
-	double nm[WAVELENGTHS], weight[MERL_CHANNELS * WAVELENGTHS];
-	double to_rgb[MERL_CHANNELS][BANDS];
-
-	for (int j = 0; j < WAVELENGTHS; j++)
-		nm[j] = (double)wavelength[j];
-	const enum status status = spectrum_weights(nm, WAVELENGTHS, weight);
-	if (status != STATUS_OK)
-		return status;
-	for (int c = 0; c < MERL_CHANNELS; c++)
-		for (int b = 0; b < BANDS; b++)
-			to_rgb[c][b] = weight[c * WAVELENGTHS + 2 * b] + weight[c * WAVELENGTHS + 2 * b + 1];
-	for (int b = 0; b < BANDS; b++)
-		for (int c = 0; c < MERL_CHANNELS; c++) {
-			const int c1 = (c + 1) % 3, c2 = (c + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
-
-			content->from_rgb[b][c] = to_rgb[c1][b1] * to_rgb[c2][b2] - to_rgb[c1][b2] * to_rgb[c2][b1];
-		}
-	double determinant = 0;
-	for (int c = 0; c < MERL_CHANNELS; c++)
-		determinant += content->from_rgb[0][c] * to_rgb[c][0];
-	for (int b = 0; b < BANDS; b++)
-		for (int c = 0; c < MERL_CHANNELS; c++)
-			content->from_rgb[b][c] /= determinant;
-	return STATUS_OK;
 }
 
 static double theta_of(double x)
@@ -193,7 +160,7 @@ static bool fill_slice(struct content *content, const struct rgl_layout *layout,
 		for (int c = 0; c < MERL_CHANNELS; c++)
 			sum += luminance[c] * f[c] / warped;
 		for (size_t c = 0; c < content->n_colours; c++) {
-			const double *row = content->from_rgb[c / 2];
+			const double *row = content->bands.from_rgb[c / 2];
 			const double value = layout->spectra ? row[0] * f[0] + row[1] * f[1] + row[2] * f[2] : f[c];
 
 			colour[c * plane + at] = (float)(value / divisor);
@@ -209,13 +176,14 @@ static bool fill_slice(struct content *content, const struct rgl_layout *layout,
 
 static enum status fill(struct content *content, const struct rgl_layout *layout)
 {
+	static const float nothing[1] = {0};
 	struct error why;
 	struct warp warp;
 	bool finite = true;
 	fill_axes(content, layout);
 	fill_densities(content, layout);
 	const struct grid grid = {
-		.param = {{wavelength, 1}, {wavelength, 1}}, .width = WARP_NODES, .height = 2, .value = content->warp};
+		.param = {{nothing, 1}, {nothing, 1}}, .width = WARP_NODES, .height = 2, .value = content->warp};
 	const enum status status = warp_init(&warp, &grid, &why);
 	if (status != STATUS_OK)
 		return status == STATUS_NO_MEMORY ? status : STATUS_DOMAIN;
@@ -234,7 +202,10 @@ static enum status encode(const struct content *content, const struct rgl_layout
 	const size_t n = layout->n_nodes, n_phi = layout->n_phi, n_theta = layout->n_theta,
 		     length = strlen(layout->description);
 	struct tensor_file file = {.n = 0};
+	float wavelength[WAVELENGTHS];
 
+	for (int j = 0; j < WAVELENGTHS; j++)
+		wavelength[j] = (float)spectrum_band_nm[j];
 	tensor_file_add(&file, "description", TENSOR_UINT8, 1, (size_t[]){length}, layout->description);
 	tensor_file_add(&file, "version", TENSOR_UINT8, 1, (size_t[]){sizeof version}, version);
 	tensor_file_add(&file, "jacobian", TENSOR_UINT8, 1, (size_t[]){1}, &jacobian);
@@ -268,7 +239,7 @@ enum status rgl_encode(const struct rgl_layout *layout, unsigned char **bytes, s
 	enum status status = STATUS_NO_MEMORY;
 
 	if (allocate(&content, layout))
-		status = find_bands(&content);
+		status = spectrum_bands(&content.bands);
 	if (status == STATUS_OK)
 		status = fill(&content, layout);
 	if (status == STATUS_OK)

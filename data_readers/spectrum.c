@@ -122,3 +122,29 @@ void spectrum_rgb(const double *weight, const double *value, size_t n, double rg
 			rgb[c] += weight[c * n + j] * value[j];
 	}
 }
+
+const double spectrum_band_nm[2 * SPECTRUM_BANDS] = {380, 490, 500, 585, 595, 780};
+
+enum status spectrum_bands(struct spectrum_bands *bands)
+{
+	double weight[3 * 2 * SPECTRUM_BANDS], determinant = 0;
+	const enum status status = spectrum_weights(spectrum_band_nm, (size_t)2 * SPECTRUM_BANDS, weight);
+	if (status != STATUS_OK)
+		return status;
+	for (int c = 0; c < 3; c++)
+		for (int b = 0; b < SPECTRUM_BANDS; b++)
+			bands->to_rgb[c][b] =
+				weight[2 * SPECTRUM_BANDS * c + 2 * b] + weight[2 * SPECTRUM_BANDS * c + 2 * b + 1];
+	for (int b = 0; b < SPECTRUM_BANDS; b++)
+		for (int c = 0; c < 3; c++) {
+			const int c1 = (c + 1) % 3, c2 = (c + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
+			bands->from_rgb[b][c] = bands->to_rgb[c1][b1] * bands->to_rgb[c2][b2] -
+						bands->to_rgb[c1][b2] * bands->to_rgb[c2][b1];
+		}
+	for (int c = 0; c < 3; c++)
+		determinant += bands->from_rgb[0][c] * bands->to_rgb[c][0];
+	for (int b = 0; b < SPECTRUM_BANDS; b++)
+		for (int c = 0; c < 3; c++)
+			bands->from_rgb[b][c] /= determinant;
+	return STATUS_OK;
+}

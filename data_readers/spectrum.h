@@ -27,4 +27,19 @@ void spectrum_rgb(const double *weight, const double *value, size_t n, double rg
 /* spectrum_xyz_to_rgb - linear sRGB of tristimulus values, whose white is that of D65 with Y = 1. */
 void spectrum_xyz_to_rgb(const double xyz[3], double rgb[3]);
 
+/* struct spectrum_bands - spectra of three flat bands with steps at 495 and 590 nm: the channels of one, and the bands of a
+ * colour. With these limits the spectrum of every colour of sRGB is nowhere negative; bands of other limits, or spectra
+ * linear between three wavelengths, lack that. A gray one is flat. */
+enum { SPECTRUM_BANDS = 3 };
+
+struct spectrum_bands {
+	double to_rgb[3][SPECTRUM_BANDS];   /* channel c = sum of to_rgb[c][b] band b */
+	double from_rgb[SPECTRUM_BANDS][3]; /* the inverse */
+};
+
+/* spectrum_band_nm - where band b begins, [2 b], and ends, [2 b + 1]; linear between them. */
+extern const double spectrum_band_nm[2 * SPECTRUM_BANDS];
+
+MUST_CHECK enum status spectrum_bands(struct spectrum_bands *bands);
+
 #endif

@@ -66,6 +66,7 @@ typedef struct stdfit_ndf stdfit_ndf;
  *     "std"           Student-t slopes [Ribardiere et al. 2017]; gamma in (1.5, inf]
  *     "ggx", "beckmann"   gamma is not read
  *     "hyper-cauchy", "t-family"   the same slopes under other roughness; gamma in (1.5, 1e6], at least 2 + 1e-6
+ *     "ellipsoid"     as "ggx"; stdfit_ndf_new_ellipsoid() makes all of them
  *     "gtr"           generalised Trowbridge-Reitz, isotropic; gamma in (0, 1000]
  *     "low"           Low et al.'s ABC, isotropic; gamma is C, in (0, 1000]
  * sigma_x, sigma_y in [1e-50, 1e50], equal where the distribution is isotropic only.
@@ -76,14 +77,14 @@ STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_new(stdfit_ndf **ndf, const char
 
 /* stdfit_ndf_new_piecewise - D linear in theta between nodes; the values are normalised here [Ribardiere et al. 2019].
  * Given: n_nodes in 2 .. 1048576; theta increasing strictly from 0 to pi/2 (to 1e-12); Dx >= 0 along phi = 0, and Dy along
- * phi = 90 degrees in the same manner; Dy NULL: isotropic. An anisotropic one has D, Lambda, G1 and sampling of normals,
- * and is STDFIT_UNSUPPORTED elsewhere. */
+ * phi = 90 degrees in the same manner; Dy NULL: isotropic. No visible normals, no moments; an anisotropic one has no albedo. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_new_piecewise(stdfit_ndf **ndf, int n_nodes, const double *theta,
 							      const double *Dx, const double *Dy,
 							      struct stdfit_error *error);
 
-/* stdfit_ndf_new_ellipsoid - the normals of the half ellipsoid |A p| = 1, A regular, in rows [Walter et al. 2014]. It has
- * D, G1 and visible normals, and is STDFIT_UNSUPPORTED elsewhere. */
+/* stdfit_ndf_new_ellipsoid - the normals of the half ellipsoid |A p| = 1, A regular, in rows [Walter et al. 2014]:
+ * "ggx" whose facets lean on average, where A has an axis askew. Then Smith's masking would exceed 1 from some directions, and is 1
+ * there; and there are no albedo, transmission or multiple scattering. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_new_ellipsoid(stdfit_ndf **ndf, const double A[9],
 							      struct stdfit_error *error);
 
@@ -268,7 +269,7 @@ STDFIT_MUST_CHECK enum stdfit_status stdfit_measurement_from_samples(stdfit_meas
 								     const double *wi, const double *wo,
 								     const double *values, const double *solid_angles,
 								     struct stdfit_error *error);
-/* stdfit_measurement_from_model - an ideal measurement of a model. bins: "node" (NULL), entries at whole degrees, or
+/* stdfit_measurement_from_model - an ideal measurement of an isotropic model. bins: "node" (NULL), entries at whole degrees, or
  * "centre", half a degree on. */
 STDFIT_MUST_CHECK enum stdfit_status stdfit_measurement_from_model(stdfit_measurement **measurement,
 								   const struct stdfit_model *model,

@@ -271,7 +271,7 @@ check_links() {
 	done <"$work/links"
 }
 
-# Every `make TARGET` and scripts/FILE that page $1 names is there.
+# Every `make TARGET`, scripts/FILE and case of a test, `test_FILE: CASE`, that page $1 names is there.
 check_names() {
 	grep -o -E '(`|^ *)make [a-z][a-z-]+' "$1" | sed 's/.*make //' | sort -u >"$work/names" || :
 	while read -r name; do
@@ -282,18 +282,22 @@ check_names() {
 	while read -r name; do
 		[ -e "$name" ] || fault "$1: no file $name"
 	done <"$work/names"
+	grep -o '`test_[a-z_]*: [A-Za-z0-9_]*' "$1" | tr -d '`:' | sort -u >"$work/names" || :
+	while read -r file name; do
+		grep -q -s -w -e "$name" "tests/$file.c" || fault "$1: no case $name in tests/$file.c"
+	done <"$work/names"
 }
 
 # Lines `COMMAND --OPTION`, of the program and of the first two columns of the tables in docs/commands.md.
 check_options() {
 	stdfit --help | sed -n 's/^  stdfit \[*\([a-z]*\)]* .*/\1/p' | while read -r command; do
-		stdfit "$command" --help | sed -n 's/^ \{2,6\}\(-[a-zA-Z], \)*\(--[a-z][a-z-]*\).*/\2/p' | sed "s/^/$command /"
+		stdfit "$command" --help | sed -n 's/^ \{2,6\}\(-[a-zA-Z], \)*\(--[a-z][a-z0-9-]*\).*/\2/p' | sed "s/^/$command /"
 	done | sort -u >"$work/options.program"
 	awk -F ' *[|] *' '/^[|] `-/ {
 		gsub(/\\[|]/, "/")
 		n = split($3, command, " ")
 		text = $2
-		while (match(text, /--[a-z][a-z-]*/)) {
+		while (match(text, /--[a-z][a-z0-9-]*/)) {
 			for (i = 1; i <= n; i++)
 				print command[i], substr(text, RSTART, RLENGTH)
 			text = substr(text, RSTART + RLENGTH)

@@ -14,7 +14,7 @@ export NM
 
 library_folders := src data_readers fit/error fit/search fit/api
 library_objects := $(filter $(foreach f,$(library_folders),$(patsubst %.c,$(BUILD)/%.o,$(wildcard $(f)/*.c))) \
-	%/kernel_avx2.o,$(lib_objects))
+	%/kernel_avx2.o %/kernel_avx512.o,$(lib_objects))
 # What the public header declares is exported, and nothing else.
 public_headers := fit/stdfit.h
 shared := libstdfit.so.$(VERSION)

@@ -77,7 +77,24 @@ double dielectric_f(const struct dielectric *dielectric, struct vec3 wi, struct 
 
 static double facet_pdf(const struct ndf *ndf, enum sampling sampling, struct vec3 wi, struct vec3 m)
 {
-	return sampling == SAMPLING_VISIBLE ? vndf_pdf(ndf, wi, m) : ndf_pdf(ndf, m);
+	struct sampler sampler;
+	if (sampling == SAMPLING_VISIBLE)
+		return vndf_pdf(ndf, wi, m);
+	if (sampling == SAMPLING_NDF)
+		return ndf_pdf(ndf, m);
+	return sampler_init(&sampler, ndf, sampling) == STATUS_OK ? sampler_pdf(&sampler, wi, m) : NAN;
+}
+
+static struct vec3 facet_sample(const struct ndf *ndf, enum sampling sampling, struct vec3 wi, const double u[2])
+{
+	struct sampler sampler;
+	if (sampling == SAMPLING_VISIBLE)
+		return vndf_sample(ndf, wi, u[0], u[1]);
+	if (sampling == SAMPLING_NDF)
+		return ndf_sample(ndf, u[0], u[1]);
+	if (sampler_init(&sampler, ndf, sampling) != STATUS_OK)
+		return (struct vec3){NAN, NAN, NAN};
+	return sampler_sample(&sampler, wi, u[0], u[1]);
 }
 
 double dielectric_pdf(const struct dielectric *dielectric, enum sampling sampling, struct vec3 wi, struct vec3 wo)
@@ -107,7 +124,11 @@ static double weight_of(const struct cook_torrance *side, enum sampling sampling
 	const double lambda_i = ndf_lambda(&side->ndf, wi);
 	const double lambda_o = ndf_lambda(&side->ndf, through ? vec3_opposite(wo) : wo);
 	const double G = (through ? gaf_smith_through : gaf_smith)(side->gaf, lambda_i, lambda_o);
-	return sampling == SAMPLING_VISIBLE ? G * (1.0 + lambda_i) : G * (cos_d / (wi.z * m.z));
+	if (sampling == SAMPLING_VISIBLE)
+		return G * (1.0 + lambda_i);
+	if (sampling == SAMPLING_NDF)
+		return G * (cos_d / (wi.z * m.z));
+	return G * (cos_d / wi.z) * (ndf_D(&side->ndf, m) / facet_pdf(&side->ndf, sampling, wi, m));
 }
 
 struct dielectric_sample dielectric_sample(const struct dielectric *dielectric, enum sampling sampling, struct vec3 wi,
@@ -118,8 +139,7 @@ struct dielectric_sample dielectric_sample(const struct dielectric *dielectric, 
 	struct dielectric_sample sample;
 	if (below)
 		wi = vec3_opposite(wi);
-	const struct vec3 m = sampling == SAMPLING_VISIBLE ? vndf_sample(&side->ndf, wi, u[0], u[1])
-							   : ndf_sample(&side->ndf, u[0], u[1]);
+	const struct vec3 m = facet_sample(&side->ndf, sampling, wi, u);
 	const bool through =
 		u[2] >= fresnel_dielectric(vec3_dot(wi, m), side->n) && dielectric_refract(wi, m, side->n, &sample.wo);
 	if (!through)

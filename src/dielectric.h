@@ -51,7 +51,7 @@ struct dielectric_sample {
  * Given:   |wi.z| > 1e-90; u[] in [0, 1)
  * Returns: wo with the density dielectric_pdf(). The mean of the weight is the share of light that one event sends on;
  *          with visible normals it is G/G1(wi) <= 1, else unbounded. What misses has been sent on to other facets.
- *          NaN with SAMPLING_VISIBLE where vndf_supports() says no.
+ *          NaN where sampler_init() says STATUS_UNSUPPORTED.
  * Note:    who follows a path from the viewer draws the light's direction by giving the viewer's for wi. The weight then
  *          lacks, in transmission, the factor 1/n^2 of reciprocity. */
 struct dielectric_sample dielectric_sample(const struct dielectric *dielectric, enum sampling sampling, struct vec3 wi,

@@ -135,7 +135,7 @@ struct surface {
 
 static bool has_axes(const struct ndf *ndf)
 {
-	return ndf->sigma_x != ndf->sigma_y;
+	return ndf_is_anisotropic(ndf);
 }
 
 static enum status surface_init(struct surface *surface, const struct cook_torrance *model, const struct ndf *ndf)

@@ -20,7 +20,7 @@ enum status energy_axes_init(struct energy_axes *axes, const struct cook_torranc
 {
 	const struct ndf *ndf = &model->ndf;
 	const double mean = sqrt(ndf->sigma_x * ndf->sigma_y);
-	if (model->gaf == GAF_V_GROOVE)
+	if (model->gaf == GAF_V_GROOVE || ndf->pwl || ndf_is_tilted(ndf))
 		return STATUS_UNSUPPORTED;
 	enum status status = ndf_init(&axes->round, ndf->class, mean, mean, ndf->gamma);
 	if (status == STATUS_OK && ndf->lambda_form != LAMBDA_EXACT)

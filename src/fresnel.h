@@ -43,7 +43,7 @@ double fresnel_conductor(double cos_d, double eta, double k);
  *     F = F0 + (F90 - F0) (1 - c)^5 + a c (1 - c)^6,        a such that F is F82 at c = 1/7
  *
  * It is linear in the three: F = sum of reflectance[i] part[i], parts in the order F0, F82, F90. The sum is moved into [0, 1],
- * beyond which reflectances in [0, 1] may lead by a few thousandths. */
+ * beyond which reflectances in [0, 1] lead by 0.13 at most, at F0 = F82 = 1 and F90 = 0. */
 enum { F82_PARTS = 3 };
 void fresnel_f82_parts(double cos_d, double part[F82_PARTS]);
 double fresnel_f82(double cos_d, const double reflectance[F82_PARTS]);

@@ -7,8 +7,8 @@
 #include <string.h>
 
 static const struct ndf_class *const classes[] = {
-	&ndf_class_std,          &ndf_class_ggx,      &ndf_class_beckmann, &ndf_class_gtr,
-	&ndf_class_hyper_cauchy, &ndf_class_t_family, &ndf_class_low,      &ndf_class_pl,
+	&ndf_class_std,      &ndf_class_ggx, &ndf_class_beckmann, &ndf_class_gtr,       &ndf_class_hyper_cauchy,
+	&ndf_class_t_family, &ndf_class_low, &ndf_class_pl,       &ndf_class_ellipsoid,
 };
 
 enum { CLASSES = sizeof(classes) / sizeof(classes[0]) };
@@ -50,6 +50,11 @@ bool ndf_has_lambda_forms(const struct ndf_class *class)
 bool ndf_has_anisotropy(const struct ndf_class *class)
 {
 	return !class->isotropic;
+}
+
+bool ndf_has_tilt(const struct ndf_class *class)
+{
+	return class->tilts;
 }
 
 bool ndf_is_student_t(const struct ndf_class *class)
@@ -147,10 +152,20 @@ enum status ndf_set_lambda_form(struct ndf *ndf, enum lambda_form form)
 	return STATUS_OK;
 }
 
+bool ndf_is_tilted(const struct ndf *ndf)
+{
+	return ndf->tilt_x != 0.0 || ndf->tilt_y != 0.0;
+}
+
+bool ndf_is_anisotropic(const struct ndf *ndf)
+{
+	return ndf->sigma_x != ndf->sigma_y || ndf_is_tilted(ndf) || (ndf->pwl && ndf->pwl->anisotropic);
+}
+
 bool ndf_plain(const struct ndf *ndf, struct ndf *plain)
 {
 	const bool ggx = ndf->gamma == 2.0 && ndf->class->ggx_at_2;
-	if ((!ggx && !isinf(ndf->gamma)) || ndf->lambda_form == LAMBDA_RATIONAL)
+	if ((!ggx && !isinf(ndf->gamma)) || ndf_is_tilted(ndf) || ndf->lambda_form == LAMBDA_RATIONAL)
 		return false;
 	const struct ndf_class *class = ggx ? &ndf_class_ggx : &ndf_class_beckmann;
 	if (ndf_init(plain, class, ndf->sigma_x / ndf->stretch, ndf->sigma_y / ndf->stretch, NAN) != STATUS_OK)
@@ -159,6 +174,14 @@ bool ndf_plain(const struct ndf *ndf, struct ndf *plain)
 	plain->turn_cos = ndf->turn_cos;
 	plain->turn_sin = ndf->turn_sin;
 	return true;
+}
+
+/* The tilt along the axes. */
+static void set_lean(struct ndf *ndf)
+{
+	const struct vec3 lean = ndf_to_axes(ndf, (struct vec3){ndf->tilt_x, ndf->tilt_y, 0.0});
+	ndf->lean_x = lean.x;
+	ndf->lean_y = lean.y;
 }
 
 enum status ndf_turn(struct ndf *ndf, double degrees)
@@ -172,6 +195,19 @@ enum status ndf_turn(struct ndf *ndf, double degrees)
 	ndf->angle = angle == -90.0 ? 90.0 : angle;
 	ndf->turn_cos = cosine;
 	ndf->turn_sin = ndf->angle < 0.0 ? -sine : sine;
+	set_lean(ndf);
+	return STATUS_OK;
+}
+
+enum status ndf_tilt(struct ndf *ndf, double x, double y)
+{
+	if (!ndf->class->tilts)
+		return STATUS_UNSUPPORTED;
+	if (!(fabs(x) <= NDF_SIGMA_MAX && fabs(y) <= NDF_SIGMA_MAX))
+		return STATUS_DOMAIN;
+	ndf->tilt_x = x;
+	ndf->tilt_y = y;
+	set_lean(ndf);
 	return STATUS_OK;
 }
 
@@ -200,11 +236,11 @@ double ndf_G1(const struct ndf *ndf, struct vec3 w)
 struct vec3 ndf_sample(const struct ndf *ndf, double u1, double u2)
 {
 	if (ndf->pwl)
-		return pwl_sample(ndf->pwl, u1, u2);
+		return ndf_from_axes(ndf, pwl_sample(ndf->pwl, u1, u2));
 	const double s = ndf->class->tilt(ndf, u2);
 	const double turn = 2.0 * M_PI * u1;
-	return ndf_from_axes(ndf,
-			     vec3_unit((struct vec3){ndf->sigma_x * s * cos(turn), ndf->sigma_y * s * sin(turn), 1.0}));
+	const struct vec3 m = {ndf->sigma_x * s * cos(turn), ndf->sigma_y * s * sin(turn), 1.0};
+	return ndf_from_axes(ndf, vec3_unit(ndf_tilted_normal(ndf, m)));
 }
 
 double ndf_pdf(const struct ndf *ndf, struct vec3 m)

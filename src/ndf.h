@@ -11,6 +11,7 @@
  *     gtr            generalised Trowbridge-Reitz, D = c (sigma^2 cos^2 + sin^2)^-gamma
  *     low            the ABC distribution of Low et al., D = A (1 + B (1 - cos))^-C
  *     pl             piecewise linear in theta between nodes (pwl.h); made by ndf_from_pwl() only
+ *     ellipsoid      normals of an ellipsoid (ellipsoid.h): ggx, and with ndf_tilt() ggx whose facets lean on average
  *
  * The general family D^G(B, C) = (C-1) B (1 + B tan^2)^-C / (pi cos^4), with B = f/sigma^2 and C = gamma, is that of
  * Student-t slopes: std is f = 1/(gamma-1). When isotropic, its members are one set of distributions under different
@@ -31,6 +32,7 @@
 #include <stdbool.h>
 
 struct pwl;
+struct ellipsoid;
 struct ndf_class; /* one row of the table of distributions; see ndf_class.h */
 
 /* Domain of a roughness: far beyond use, but inside it nothing overflows to NaN. */
@@ -75,6 +77,9 @@ struct ndf {
 	/* Set by ndf_turn(). */
 	double angle; /* of the axis of sigma_x: its azimuth in degrees, (-90, 90]; 0: the axes are x and y */
 	double turn_cos, turn_sin; /* of it; read only where angle is not 0 */
+	/* Set by ndf_tilt(): */
+	double tilt_x, tilt_y; /* means of m.x/m.z and m.y/m.z; 0 but for the ellipsoid */
+	double lean_x, lean_y; /* the same along the axes */
 };
 
 /* ndf_find - the class called `name` ("std", "ggx", ...), or NULL. */
@@ -91,6 +96,8 @@ bool ndf_is_tabulated(const struct ndf_class *ndf_class);
 bool ndf_has_lambda_forms(const struct ndf_class *ndf_class);
 /* ndf_has_anisotropy - whether sigma_x and sigma_y may differ. */
 bool ndf_has_anisotropy(const struct ndf_class *ndf_class);
+/* ndf_has_tilt - whether ndf_tilt() takes it: the ellipsoid. */
+bool ndf_has_tilt(const struct ndf_class *ndf_class);
 /* ndf_is_student_t - whether the slopes are Student-t (std, hyper-cauchy, t-family): the other forms of Lambda exist, and
  * gamma begins at 1.5. */
 bool ndf_is_student_t(const struct ndf_class *ndf_class);
@@ -117,7 +124,7 @@ MUST_CHECK enum status ndf_init_params(struct ndf *ndf, const struct ndf_class *
 MUST_CHECK enum status ndf_init_params_anisotropic(struct ndf *ndf, const struct ndf_class *ndf_class,
 						   const double value[], double sigma_y);
 
-/* ndf_from_pwl - the isotropic piecewise-linear distribution *pwl, which has to outlive *ndf. */
+/* ndf_from_pwl - the piecewise-linear distribution *pwl, which has to outlive *ndf; anisotropic if its tables are. */
 void ndf_from_pwl(struct ndf *ndf, const struct pwl *pwl);
 
 /* ndf_set_lambda_form - the form of Lambda that ndf_lambda() and ndf_G1() use from now on; exact after ndf_init().
@@ -125,6 +132,23 @@ void ndf_from_pwl(struct ndf *ndf, const struct pwl *pwl);
  *          LAMBDA_TRAPEZOID); STATUS_DOMAIN where gamma is none that the form can do (lambda_form.h). *ndf is untouched
  *          then. */
 MUST_CHECK enum status ndf_set_lambda_form(struct ndf *ndf, enum lambda_form form);
+
+/* ndf_from_ellipsoid - the distribution of an ellipsoid: its roughnesses, axes and tilt. *ellipsoid is only read.
+ * Returns: STATUS_OK, or STATUS_DOMAIN, *ndf untouched: a roughness is out of the domain of ndf_init(). Relative error of D
+ *          1e-14 times the condition of A. */
+MUST_CHECK enum status ndf_from_ellipsoid(struct ndf *ndf, const struct ellipsoid *ellipsoid);
+
+/* ndf_tilt - leans the facets of the ellipsoid: the mean of m.x/m.z and m.y/m.z is (x, y), whatever the angle of the axes, 0 after
+ * ndf_init(). Such facets are not those of a surface that is level on average: Smith's masking would exceed 1 for some
+ * directions. So Lambda there is 0, while visible normals have the exact density [ellipsoid_pdf()].
+ * Given:   |x|, |y| up to NDF_SIGMA_MAX
+ * Returns: STATUS_OK; STATUS_UNSUPPORTED for another class, STATUS_DOMAIN for other numbers; *ndf is untouched then. */
+MUST_CHECK enum status ndf_tilt(struct ndf *ndf, double x, double y);
+
+/* ndf_is_tilted - whether ndf_tilt() has been given other than 0, 0.
+ * ndf_is_anisotropic - whether D changes with the azimuth: that, two roughnesses, or two tables of pl. */
+bool ndf_is_tilted(const struct ndf *ndf);
+bool ndf_is_anisotropic(const struct ndf *ndf);
 
 /* ndf_plain - GGX or Beckmann, into *plain, where a distribution is one of them under another name: the same D
  * and Lambda to rounding. Returns: false, *plain untouched, where it is neither, or has the rational form of Lambda. */

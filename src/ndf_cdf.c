@@ -13,23 +13,29 @@ static double from_axis(const struct ndf *ndf, double phi)
 
 double ndf_cdf_phi(const struct ndf *ndf, double phi)
 {
-	if (ndf->pwl)
-		return pwl_cdf_phi(ndf->pwl, phi);
+	if (ndf_is_tilted(ndf))
+		return NAN;
 	const double axis = ndf->angle * (M_PI / 180.0);
+	if (ndf->pwl)
+		return pwl_cdf_phi(ndf->pwl, phi - axis) - pwl_cdf_phi(ndf->pwl, -axis);
 	return from_axis(ndf, phi - axis) - from_axis(ndf, -axis);
 }
 
-/* Share below the slope tan(theta) where the roughness is s. */
+/* Share below the slope tan(theta) where the roughness is s; rounding may lead out of [0, 1]. */
 static double below(const struct ndf *ndf, double theta, double s)
 {
-	return theta >= 0.5 * M_PI ? 1.0 : ndf->class->share(ndf, tan(theta) / s);
+	if (theta <= 0.0)
+		return 0.0;
+	return theta >= 0.5 * M_PI ? 1.0 : fmin(fmax(ndf->class->share(ndf, tan(theta) / s), 0.0), 1.0);
 }
 
 double ndf_cdf_theta(const struct ndf *ndf, double theta, double phi)
 {
+	if (ndf_is_tilted(ndf))
+		return NAN;
+	phi -= ndf->angle * (M_PI / 180.0);
 	if (ndf->pwl)
 		return pwl_cdf_theta(ndf->pwl, theta, phi);
-	phi -= ndf->angle * (M_PI / 180.0);
 	return below(ndf, theta, 1.0 / hypot(cos(phi) / ndf->sigma_x, sin(phi) / ndf->sigma_y));
 }
 
@@ -48,7 +54,8 @@ static double by_share(double t, void *params)
 static double by_azimuth(double phi, void *params)
 {
 	const struct joint *joint = params;
-	const double density = (1.0 + joint->ndf->pwl->blend * cos(2.0 * phi)) / (2.0 * M_PI);
+	const double axis = joint->ndf->angle * (M_PI / 180.0);
+	const double density = (1.0 + joint->ndf->pwl->blend * cos(2.0 * (phi - axis))) / (2.0 * M_PI);
 	return density * ndf_cdf_theta(joint->ndf, joint->theta, phi);
 }
 
@@ -69,6 +76,8 @@ static double signed_integral(double (*f)(double x, void *params), struct joint 
 
 double ndf_cdf(const struct ndf *ndf, double theta, double phi)
 {
+	if (ndf_is_tilted(ndf))
+		return NAN;
 	struct joint joint = {ndf, theta};
 	if (ndf->pwl)
 		return signed_integral(by_azimuth, &joint, phi);

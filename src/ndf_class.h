@@ -20,14 +20,20 @@ struct ndf_class {
 	/* Where param[] is not sigma, gamma: from sigma and gamma to param[], and back. */
 	void (*to_params)(struct ndf *ndf);
 	void (*from_params)(struct ndf *ndf);
+	/* ndf_tilt() takes it. */
+	bool tilts;
 	/* Called last, to fill in what is cached. Returns false where the parameters do not go together. NULL =
 	 * nothing. */
 	bool (*prepare)(struct ndf *ndf);
 	/* Called with m.z > 0 and w.z > 0 (or NaN) only. */
 	double (*D)(const struct ndf *ndf, struct vec3 m);
 	double (*lambda)(const struct ndf *ndf, struct vec3 w);
+	/* vndf_area(), for w.z of any sign, where Lambda does not tell it; NULL: it does. */
+	double (*area)(const struct ndf *ndf, struct vec3 w);
 	/* Density of the slope q where the roughness is s. */
 	double (*P2)(const struct ndf *ndf, double s, double q);
+	/* In its place where the azimuth, radians from the first axis, matters otherwise than by the roughness. */
+	double (*P2_along)(const struct ndf *ndf, double phi, double q);
 	/* tan(theta_m) of the share u of normals, in units of sigma; below it lies the share u. NULL for pl. */
 	double (*tilt)(const struct ndf *ndf, double u);
 	/* Its inverse: the share of normals whose tan(theta_m) is below s, in units of sigma. NULL for pl. */
@@ -42,6 +48,7 @@ struct ndf_class {
 	}
 
 extern const struct ndf_class ndf_class_beckmann;
+extern const struct ndf_class ndf_class_ellipsoid;
 extern const struct ndf_class ndf_class_ggx;
 extern const struct ndf_class ndf_class_gtr;
 extern const struct ndf_class ndf_class_hyper_cauchy;

@@ -28,6 +28,23 @@ static inline struct vec3 ndf_from_axes(const struct ndf *ndf, struct vec3 v)
 	return (struct vec3){ndf->turn_cos * v.x - ndf->turn_sin * v.y, ndf->turn_cos * v.y + ndf->turn_sin * v.x, v.z};
 }
 
+/* A normal of the distribution without its tilt, as one with it, and back; and a direction that the first sees as the second
+ * sees w: w.m stays. None is of length 1 then. All along the axes. */
+static inline struct vec3 ndf_tilted_normal(const struct ndf *ndf, struct vec3 m)
+{
+	return (struct vec3){m.x + ndf->lean_x * m.z, m.y + ndf->lean_y * m.z, m.z};
+}
+
+static inline struct vec3 ndf_untilted_normal(const struct ndf *ndf, struct vec3 m)
+{
+	return (struct vec3){m.x - ndf->lean_x * m.z, m.y - ndf->lean_y * m.z, m.z};
+}
+
+static inline struct vec3 ndf_untilted_direction(const struct ndf *ndf, struct vec3 w)
+{
+	return (struct vec3){w.x, w.y, w.z + ndf->lean_x * w.x + ndf->lean_y * w.y};
+}
+
 /* An unevaluated sum, |lo| <= ulp(hi)/2. */
 struct dd {
 	double hi, lo;
@@ -113,7 +130,7 @@ static inline double ggx_tilt(const struct ndf *ndf, double u)
 static inline double ggx_share(const struct ndf *ndf, double s)
 {
 	(void)ndf;
-	return 1.0 / (1.0 + 1.0 / s / s);
+	return s < 1.0 ? s * s / (1.0 + s * s) : 1.0 / (1.0 + 1.0 / s / s);
 }
 
 /* GGX: P2 = (1 + (q/s)^2)^(-3/2) / (2 s) */

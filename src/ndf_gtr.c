@@ -68,7 +68,8 @@ static double gtr_share(const struct ndf *ndf, double s)
 {
 	const double span = log_span(ndf), power = 1.0 - ndf->gamma;
 	const double tangent = s * ndf->sigma_x;
-	const double sin2 = 1.0 / (1.0 + 1.0 / tangent / tangent), cos2 = 1.0 / (1.0 + tangent * tangent);
+	const double cos2 = 1.0 / (1.0 + tangent * tangent);
+	const double sin2 = tangent < 1.0 ? tangent * tangent * cos2 : 1.0 / (1.0 + 1.0 / tangent / tangent);
 	const double x = ndf->sigma_x > 1.0 ? cos2 : sin2;
 	const double log_v = log1p(expm1(span) * x);
 	const double below = span == 0.0 ? x : power == 0.0 ? log_v / span : expm1(power * log_v) / expm1(power * span);

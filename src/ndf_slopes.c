@@ -8,14 +8,21 @@ double ndf_P22(const struct ndf *ndf, double p, double q)
 	return ndf_D(ndf, m) * (m.z * m.z) * (m.z * m.z);
 }
 
+static double from_axis(const struct ndf *ndf, double phi)
+{
+	return phi - ndf->angle * (M_PI / 180.0);
+}
+
 static double sigma_along(const struct ndf *ndf, double phi)
 {
-	phi -= ndf->angle * (M_PI / 180.0);
+	phi = from_axis(ndf, phi);
 	return hypot(ndf->sigma_x * cos(phi), ndf->sigma_y * sin(phi));
 }
 
 double ndf_P2(const struct ndf *ndf, double phi, double q)
 {
+	if (ndf->class->P2_along)
+		return ndf->class->P2_along(ndf, from_axis(ndf, phi), q);
 	return ndf->class->P2(ndf, sigma_along(ndf, phi), q);
 }
 
@@ -30,7 +37,9 @@ enum status ndf_moment(const struct ndf *ndf, double phi, int order, double *mom
 	if (order < 0 || !(order + 2.0 < tail_exponent(ndf)))
 		return STATUS_DOMAIN;
 	if (order % 2 == 1) {
-		*moment = 0.0;
+		phi = from_axis(ndf, phi);
+		/* a tilted one has no other */
+		*moment = ndf_is_tilted(ndf) ? -(ndf->lean_x * cos(phi) + ndf->lean_y * sin(phi)) : 0.0;
 		return STATUS_OK;
 	}
 	const double s = sigma_along(ndf, phi);

@@ -235,6 +235,8 @@ enum status pwl_init(struct pwl *pwl, int n_nodes, const double *theta, const do
 	}
 	fill_slopes(pwl);
 	fill_cells(pwl);
+	for (int i = 0; i < n_nodes; i++)
+		pwl->anisotropic = pwl->anisotropic || pwl->nodes[i].Fx != pwl->nodes[i].Fy;
 	return STATUS_OK;
 }
 
@@ -583,5 +585,5 @@ double pwl_cdf_theta(const struct pwl *pwl, double theta, double phi)
 	const struct pwl_node *node = &pwl->nodes[find_node(pwl, theta)];
 	const double t = theta - node->theta;
 	const double mass = blend_mass(&blend, node) + blend.x * node_mass_x(node, t) + blend.y * node_mass_y(node, t);
-	return mass / blend_mass(&blend, &pwl->nodes[pwl->n_nodes - 1]);
+	return fmin(fmax(mass / blend_mass(&blend, &pwl->nodes[pwl->n_nodes - 1]), 0.0), 1.0);
 }

@@ -31,6 +31,7 @@ struct pwl_node {
 struct pwl {
 	int n_nodes;
 	struct pwl_node *nodes;
+	bool anisotropic;         /* Dx and Dy differ somewhere */
 	double blend;             /* (Dy(0) - Dx(0))/(Dy(0) + Dx(0)), of the CDF of phi */
 	int n_cells;              /* segments, the longer ones divided, for quadrature */
 	double *cells;            /* n_cells + 1 bounds */

@@ -160,7 +160,9 @@ static double phase(const struct ray *ray, struct vec3 wo, double *cos_d)
 	if (wo.z > 0.0) {
 		const struct vec3 sum = vec3_add(wi, wo);
 		*cos_d = fmin(0.5 * vec3_length(sum), 1.0);
-		return 0.25 * ndf_D(ndf, vec3_unit(sum)) / vndf_area(ndf, wi);
+		/* Straight on, which no facet does, and where D and the area are both too small for a double. */
+		const double D = *cos_d > 0.0 ? ndf_D(ndf, vec3_unit(sum)) : 0.0;
+		return D > 0.0 ? 0.25 * D / vndf_area(ndf, wi) : 0.0;
 	}
 	const struct dielectric_half half = dielectric_half(wi, wo, ray->n);
 	*cos_d = vec3_dot(wi, half.m);

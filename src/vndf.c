@@ -171,7 +171,8 @@ struct vndf_slopes vndf_beckmann_slopes(double cos_i, double sin_i, double u1, d
 
 bool vndf_supports(const struct ndf *ndf)
 {
-	return ndf->class->student_t || ndf->class == &ndf_class_ggx || ndf->class == &ndf_class_beckmann;
+	return ndf->class->student_t || ndf->class == &ndf_class_ggx || ndf->class == &ndf_class_beckmann ||
+	       ndf->class->tilts;
 }
 
 bool vndf_rational_supports(const struct ndf *ndf)
@@ -216,10 +217,11 @@ static struct vec3 sample(const struct ndf *ndf, struct vec3 wi, double u1, doub
 	wi = ndf_to_axes(ndf, wi);
 	wi.z = fabs(wi.z) < NDF_COS_MIN ? NDF_COS_MIN : wi.z;
 	const double sigma_x = ndf->sigma_x / ndf->stretch, sigma_y = ndf->sigma_y / ndf->stretch; /* of std */
-	const struct stretched seen = stretch(sigma_x, sigma_y, wi);
+	const struct stretched seen = stretch(sigma_x, sigma_y, ndf_untilted_direction(ndf, wi));
 	const struct scaled_slopes s = sample_slopes(ndf, seen.cos_i, seen.sin_i, inside(u1), inside(u2), how);
-	struct vec3 m = vec3_unit((struct vec3){-sigma_x * (seen.cos_phi * s.x - seen.sin_phi * s.y),
-						-sigma_y * (seen.sin_phi * s.x + seen.cos_phi * s.y), s.one});
+	const struct vec3 untilted = {-sigma_x * (seen.cos_phi * s.x - seen.sin_phi * s.y),
+				      -sigma_y * (seen.sin_phi * s.x + seen.cos_phi * s.y), s.one};
+	struct vec3 m = vec3_unit(ndf_tilted_normal(ndf, untilted));
 	m.z = ndf_cos(m);
 	/* The rounding of m can turn the very last bit of wi.m. */
 	const double cos_d = vec3_dot(wi, m);
@@ -242,6 +244,8 @@ struct vec3 vndf_sample(const struct ndf *ndf, struct vec3 wi, double u1, double
 
 double vndf_area(const struct ndf *ndf, struct vec3 wi)
 {
+	if (ndf->class->area)
+		return ndf->class->area(ndf, ndf_to_axes(ndf, wi));
 	if (wi.z <= -NDF_COS_MIN)
 		return -wi.z * ndf_lambda(ndf, vec3_opposite(wi));
 	const struct vec3 up = {wi.x, wi.y, ndf_cos(wi)};
@@ -268,8 +272,8 @@ static struct vndf_slopes slopes_seen(const struct ndf *ndf, struct vec3 wi, str
 	const double sigma_x = ndf->sigma_x / ndf->stretch, sigma_y = ndf->sigma_y / ndf->stretch;
 	wi = ndf_to_axes(ndf, wi);
 	wi.z = wi.z < NDF_COS_MIN ? NDF_COS_MIN : wi.z;
-	m = ndf_to_axes(ndf, m);
-	*seen = stretch(sigma_x, sigma_y, wi);
+	m = ndf_untilted_normal(ndf, ndf_to_axes(ndf, m));
+	*seen = stretch(sigma_x, sigma_y, ndf_untilted_direction(ndf, wi));
 	const double p = -m.x / ndf_cos(m) / sigma_x, q = -m.y / ndf_cos(m) / sigma_y;
 	return (struct vndf_slopes){seen->cos_phi * p + seen->sin_phi * q, seen->cos_phi * q - seen->sin_phi * p};
 }
@@ -287,8 +291,10 @@ void vndf_cdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m, double *alon
 		return;
 	struct stretched seen;
 	const struct vndf_slopes s = slopes_seen(ndf, wi, m, &seen);
+	if (seen.cos_i < 0.0)
+		return;
 	if (ndf->gamma != 2.0 && ndf->K == 0.0) {
-		const double cot = fmin(seen.cos_i / seen.sin_i, 1e100);
+		const double cot = seen.sin_i > 1e-100 ? seen.cos_i / seen.sin_i : 1e100;
 		*along = fmin(beckmann_seen_below(&seen, fmin(s.x, cot)) / beckmann_seen_below(&seen, cot), 1.0);
 		*across = 0.5 * erfc(-s.y);
 		return;
@@ -297,8 +303,8 @@ void vndf_cdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m, double *alon
 	const struct student slopes_along = {ndf->gamma - 0.5, K, seen.cos_i,
 					     seen.sin_i > 1e-160 ? scale * seen.sin_i : 0.0};
 	const struct student slopes_across = {ndf->gamma, a * M_1_PI / K, 1.0, 0.0};
-	*along = student_cdf(&slopes_along, s.x / scale);
-	*across = student_cdf(&slopes_across, s.y / hypot(scale, s.x));
+	*along = fmin(student_cdf(&slopes_along, s.x / scale), 1.0);
+	*across = fmin(student_cdf(&slopes_across, s.y / hypot(scale, s.x)), 1.0);
 }
 
 double vndf_rational_pdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m)
@@ -315,5 +321,7 @@ double vndf_pdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m)
 	const double cos_d = vec3_dot(wi, m);
 	if (wi.z <= 0.0 || m.z <= 0.0 || cos_d <= 0.0)
 		return 0.0;
+	if (ndf_is_tilted(ndf)) /* G1 is bounded */
+		return vndf_pdf_inside(ndf, wi, m);
 	return ndf_G1(ndf, wi) / wi.z * cos_d * ndf_D(ndf, m);
 }

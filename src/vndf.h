@@ -7,6 +7,7 @@
  *     ggx        x by the closed inverse of its CDF, y by the quantile of Student's t with 3 degrees of freedom
  *     beckmann   x by splitting the CDF into invertible parts, y by the normal quantile
  *     std        x by inverting its CDF, y by the quantile of Student's t with 2 gamma - 1 degrees of freedom
+ *     ellipsoid  as ggx, from a direction that sees it without its tilt as wi does with it
  * hyper-cauchy and t-family are std at another roughness, and std is ggx or beckmann where gamma makes it so. The maps
  * of all but beckmann increase in u1 and u2 and have no jumps, as stratified samples want; that of beckmann jumps.
  *
@@ -51,7 +52,8 @@ double vndf_area(const struct ndf *ndf, struct vec3 wi);
  *     *across   of the slope y across wi, among facets of that x     C(y|x)
  * Both are uniform and independent when m has the density D_wi; the map of all but beckmann is (u1, u2) itself.
  * Given:   unit vectors; wi.z <= 0 counts as grazing incidence, m.z <= 0 as the horizon
- * Returns: absolute error 1e-13; NaN where vndf_supports() says no, and for NaN. */
+ * Returns: absolute error 1e-13; NaN where vndf_supports() says no, for NaN, and where tilted facets face away from wi on
+ *          average. */
 void vndf_cdf(const struct ndf *ndf, struct vec3 wi, struct vec3 m, double *along, double *across);
 
 /* vndf_rational_sample, vndf_rational_pdf - visible normals of ggx, and of what is ggx at gamma = 2, with the slope across

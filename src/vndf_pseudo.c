@@ -29,6 +29,8 @@ enum status vndf_pseudo_init(struct vndf_pseudo *pseudo, const struct ndf *ndf)
 {
 	if (!vndf_supports(ndf))
 		return STATUS_DOMAIN;
+	if (ndf_is_tilted(ndf))
+		return STATUS_DOMAIN;
 	const double sigma_x = ndf->sigma_x / ndf->stretch, sigma_y = ndf->sigma_y / ndf->stretch; /* of std */
 	const char *name = substitute(sqrt(sigma_x * sigma_y), ndf->gamma);
 	*pseudo = (struct vndf_pseudo){*ndf, name != NULL};

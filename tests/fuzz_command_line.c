@@ -29,10 +29,12 @@ static void check_text(const struct options *options)
 static int check_model(const struct options *options)
 {
 	struct cook_torrance model = {.n = -1};
-	const int code = options_model(options, &model);
-	PROMISE(code == -1 || code == EXIT_USAGE);
+	struct distribution distribution;
+	const int code = options_model(options, &model, &distribution);
+	PROMISE(code == -1 || code == EXIT_USAGE || (code == EXIT_FAILED && options->nodes));
 	if (code == -1)
 		PROMISE(model.n > 0 && model.ks[0] >= 0 && model.kd[2] >= 0 && model.ndf.sigma_x > 0);
+	distribution_free(&distribution);
 	return code;
 }
 

@@ -11,6 +11,7 @@
 #include "src/dielectric.h"
 #include "src/ellipsoid.h"
 #include "src/energy.h"
+#include "src/ndf_cdf.h"
 #include "src/ndf_slopes.h"
 #include "src/pwl.h"
 #include "src/random_walk.h"
@@ -381,11 +382,95 @@ static void sweep_sample(const struct subject *s)
 	}
 }
 
+/* The share of normals below theta, reference. */
+static long double reference_share(const struct subject *s, double theta)
+{
+	const struct ndf *ndf = &s->ndf;
+	const long double t = tanl((long double)theta) / (long double)ndf->sigma_x, q = t * t;
+	if (s->quadrature || theta == 0.5 * M_PI)
+		return NAN;
+	return isinf(ndf->gamma) ? -expm1l(-q) : -expm1l((1 - (long double)ndf->gamma) * log1pl(q / (long double)s->a));
+}
+
+/* The shares of normals below theta and in (0, phi). */
+static void sweep_cdfs(const struct subject *s)
+{
+	struct row *row = row_of("CDF of theta", s->name), *joint_row = row_of("CDF", s->name);
+	struct ndf flat = s->ndf;
+	double before = 0.0;
+	if (ndf_has_anisotropy(flat.class) &&
+	    ndf_init(&flat, s->ndf.class, s->ndf.sigma_x, sqrt(s->ndf.sigma_x), s->ndf.gamma) != STATUS_OK)
+		abort();
+	for (int i = 0; i < EXTREME_DIRECTIONS; i++) { /* from the normal down */
+		const double theta = atan2(s->w[i].x, s->w[i].z), phi = 0.7 * (i % 9);
+		const long double share = reference_share(s, theta);
+		double value;
+		int flags;
+		set_case("sigma %g gamma %.17g theta %.17g phi %g", s->ndf.sigma_x, s->ndf.gamma, theta, phi);
+		OBSERVE(value, flags, ndf_cdf_theta(&s->ndf, theta, phi));
+		check(row, value, flags, (struct expected){0.0, 1.0, false, share, 1e-14 / (double)share});
+		check_order(row, -before, -value, 1e-14);
+		before = value;
+		OBSERVE(value, flags, ndf_cdf_phi(&flat, phi));
+		check(row_of("CDF of phi", s->name), value, flags, (struct expected){0.0, 1.0, false, NAN, 1.0});
+		if (i % 4 != 0) /* it is slow */
+			continue;
+		OBSERVE(value, flags, ndf_cdf(&flat, theta, phi));
+		check(joint_row, value, flags, (struct expected){0.0, 1.0 + 1e-12, false, NAN, 1.0});
+	}
+}
+
+/* A normal drawn by one of the samplers: a unit vector above the horizon, with a density. */
+static void check_drawn(const struct sampler *sampler, struct vec3 wi, double u1, double u2, struct row *row)
+{
+	struct vec3 m;
+	double pdf;
+	int flags;
+	OBSERVE(m, flags, sampler_sample(sampler, wi, u1, u2));
+	check(row, m.z, flags, (struct expected){0.0, 1.0, false, NAN, 1.0});
+	check(row, vec3_length(m), 0, (struct expected){1.0 - 4.0 * eps, 1.0 + 4.0 * eps, false, NAN, 1.0});
+	trapping = wi.z < 1e-270 ? FE_INVALID : TRAPS;
+	OBSERVE(pdf, flags, sampler_pdf(sampler, wi, m));
+	check(row, pdf, flags & trapping, (struct expected){0.0, INFINITY, false, NAN, 1.0});
+	trapping = TRAPS;
+}
+
+/* The samplers of the papers: the substitute for visible normals, and the rational fit. And where what is drawn stands among
+ * the visible normals. */
+static void sweep_samplers(const struct subject *s)
+{
+	for (int k = 0; k < SAMPLING_COUNT; k++) {
+		struct sampler sampler;
+		char name[64];
+		if (sampler_init(&sampler, &s->ndf, (enum sampling)k) != STATUS_OK)
+			continue;
+		snprintf(name, sizeof(name), "sampler %s", sampling_name((enum sampling)k));
+		for (int i = 0; i < EXTREME_DIRECTIONS; i += 3)
+			for (int j = i % 4; j < COUNT(uniform) * COUNT(uniform); j += 4) {
+				const struct vec3 wi = turned(s->w[i], 0.4 * i);
+				const double u1 = uniform[j % COUNT(uniform)], u2 = uniform[j / COUNT(uniform)];
+				set_case("sigma %g gamma %.17g wi (%g, %g, %g) u %g %g", s->ndf.sigma_x, s->ndf.gamma,
+					 wi.x, wi.y, wi.z, u1, u2);
+				check_drawn(&sampler, wi, u1, u2, row_of(name, s->name));
+			}
+	}
+	for (int i = 0; i < EXTREME_DIRECTIONS && vndf_supports(&s->ndf); i += 3)
+		for (int j = 0; j < EXTREME_DIRECTIONS; j += 2) {
+			const struct vec3 m = turned(s->w[j], 0.7);
+			double along, across;
+			int flags;
+			set_case("sigma %g gamma %.17g wi (%g, 0, %g) m (%g, %g, %g)", s->ndf.sigma_x, s->ndf.gamma,
+				 s->w[i].x, s->w[i].z, m.x, m.y, m.z);
+			OBSERVE(along, flags, (vndf_cdf(&s->ndf, s->w[i], m, &along, &across), along));
+			check(row_of("visible CDF", s->name), along, flags,
+			      (struct expected){0.0, 1.0, false, NAN, 1.0});
+			check(row_of("visible CDF", s->name), across, 0, (struct expected){0.0, 1.0, false, NAN, 1.0});
+		}
+}
+
 static void sweep_visible(const struct subject *s)
 {
 	struct row *pdf_row = row_of("visible pdf", s->name), *sample_row = row_of("visible sample", s->name);
-	struct vndf_pseudo pseudo;
-	const bool substitute = vndf_supports(&s->ndf) && vndf_pseudo_init(&pseudo, &s->ndf) == STATUS_OK;
 	for (int i = 0; i < EXTREME_DIRECTIONS; i += s->quadrature ? 4 : 2) {
 		for (int j = 0; j < EXTREME_DIRECTIONS; j += 2) {
 			const struct vec3 wi = s->w[i], m = turned(s->w[j], 0.7);
@@ -421,11 +506,6 @@ static void sweep_visible(const struct subject *s)
 			      (struct expected){1.0 - 4.0 * eps, 1.0 + 4.0 * eps, false, NAN, 1.0});
 			check(sample_row, vec3_dot(wi, m), 0,
 			      (struct expected){-eps, 1.0 + 4.0 * eps, false, NAN, 1.0});
-			if (!substitute)
-				continue;
-			OBSERVE(m, flags, vndf_pseudo_sample(&pseudo, wi, u1, u2));
-			check(row_of("substitute sample", s->name), m.z, flags,
-			      (struct expected){0.0, 1.0, false, NAN, 1.0});
 		}
 	}
 }
@@ -517,6 +597,26 @@ static double walk_f(const struct random_walk *walk, struct vec3 wi, struct vec3
 	return f[0];
 }
 
+/* Between mirrors of metal, which keep a part of the light. */
+static void sweep_mirror_walk(const struct subject *s, struct vec3 wi, const struct random_numbers *numbers,
+			      struct row *row)
+{
+	static const double n[3] = {0.143, 1.0, 1e3}, k[3] = {3.98, 1e-3, 1e3};
+	struct random_walk walk;
+	struct random_walk_exit out;
+	double f;
+	int flags;
+	if (random_walk_init_mirror(&walk, &s->ndf, FRESNEL_CONDUCTOR, n, k) != STATUS_OK)
+		abort();
+	OBSERVE(out, flags, random_walk_sample(&walk, wi, numbers));
+	check(row, vec3_length(out.wo), flags & trapping,
+	      (struct expected){1.0 - 4.0 * eps, 1.0 + 4.0 * eps, false, NAN, 1.0});
+	for (int c = 0; c < 3; c++)
+		check(row, out.weight[c], 0, (struct expected){0.0, 1.0 + 1e-12, false, NAN, 1.0});
+	OBSERVE(f, flags, walk_f(&walk, wi, out.wo, numbers));
+	check(row, f, flags & trapping, (struct expected){0.0, INFINITY, true, NAN, 1.0});
+}
+
 static void sweep_walks(const struct subject *s)
 {
 	struct row *row = row_of("random walk", s->name);
@@ -543,6 +643,7 @@ static void sweep_walks(const struct subject *s)
 		check(row, out.weight[0], 0, (struct expected){1.0, 1.0, false, NAN, 1.0});
 		OBSERVE(f, flags, walk_f(&walk, wi, out.wo, &numbers));
 		check(row, f, flags & trapping, (struct expected){0.0, INFINITY, true, NAN, 1.0});
+		sweep_mirror_walk(s, s->w[i], &numbers, row_of("walk of a metal", s->name));
 		trapping = TRAPS;
 	}
 }
@@ -671,7 +772,9 @@ static void sweep_subject(struct subject *s, bool few)
 	sweep_P2(s);
 	sweep_sample(s);
 	sweep_opposite(s);
+	sweep_cdfs(s);
 	sweep_visible(s);
+	sweep_samplers(s);
 	sweep_inside(s);
 	sweep_transmission(s);
 	sweep_walks(s);
@@ -690,7 +793,7 @@ static void sweep_distributions(void)
 				struct subject subject;
 				if (!ndf_has_gamma(ndf_at(d)) && j > 0)
 					break;
-				if (j % 3 != 1 &&
+				if (j % 3 != 1 && ndf_has_gamma(ndf_at(d)) &&
 				    ndf_at(d) != ndf_find("std")) /* they share its formulas, or are slow */
 					continue;
 				if (ndf_init(&subject.ndf, ndf_at(d), extreme_sigma[i], extreme_sigma[i],
@@ -802,6 +905,8 @@ static void sweep_one_ellipsoid(const struct ellipsoid *e, const char *name, con
 			check(row_of("D", name), value, flags, (struct expected){0.0, INFINITY, false, NAN, 1.0});
 			OBSERVE(value, flags, ellipsoid_G1(e, v));
 			check(row_of("G1", name), value, flags, (struct expected){0.0, 1.0, false, NAN, 1.0});
+			OBSERVE(value, flags, ellipsoid_smith(e, v));
+			check(row_of("Smith", name), value, flags, (struct expected){0.0, INFINITY, false, NAN, 1.0});
 			for (int j = i % 5; j < COUNT(uniform) * COUNT(uniform); j += 5) {
 				struct vec3 m;
 				OBSERVE(m, flags,
@@ -859,6 +964,29 @@ static void sweep_table(const char *name, const struct pwl *pwl)
 		OBSERVE(value, flags, ndf_G1(&ndf, w[i]));
 		check(row_of("G1", "pl"), value, flags & trapping, (struct expected){0.0, 1.0, false, NAN, 1.0});
 		trapping = TRAPS;
+	}
+	struct ndf rough = ndf;
+	if (ndf_set_lambda_form(&rough, LAMBDA_TRAPEZOID) != STATUS_OK)
+		abort();
+	before = 0.0;
+	for (int i = 0; i < EXTREME_DIRECTIONS; i++) {
+		const double theta = fmin(atan2(w[i].x, w[i].z), 0.5 * M_PI), phi = 0.7 * (i % 9);
+		double value;
+		int flags;
+		set_case("%s w (%g, 0, %g) phi %g", name, w[i].x, w[i].z, phi);
+		trapping = w[i].z < 1e-250 ? FE_INVALID : TRAPS;
+		OBSERVE(value, flags, ndf_G1(&rough, turned(w[i], phi)));
+		check(row_of("G1 by trapezoids", "pl"), value, flags & trapping,
+		      (struct expected){0.0, 1.0, false, NAN, 1.0});
+		trapping = TRAPS;
+		OBSERVE(value, flags, ndf_cdf_theta(&ndf, theta, 0.3));
+		check(row_of("CDF of theta", "pl"), value, flags, (struct expected){0.0, 1.0, false, NAN, 1.0});
+		check_order(row_of("CDF of theta", "pl"), -before, -value, 1e-14);
+		before = value;
+		OBSERVE(value, flags, ndf_cdf_phi(&ndf, phi));
+		check(row_of("CDF of phi", "pl"), value, flags, (struct expected){0.0, 1.0, false, NAN, 1.0});
+		OBSERVE(value, flags, ndf_cdf(&ndf, theta, phi));
+		check(row_of("CDF", "pl"), value, flags, (struct expected){0.0, 1.0 + 1e-12, false, NAN, 1.0});
 	}
 	for (int j = 0; j < COUNT(uniform) * COUNT(uniform); j++) {
 		struct vec3 m;

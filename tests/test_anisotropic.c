@@ -153,7 +153,7 @@ static void what_has_no_axes_is_refused(void **state)
 	stdfit("eval brushed.csv --ndf ggx --sigma 0.2 --angle 10 --ks 1");
 	expect_error(2, "--angle needs --sigma SX,SY");
 	stdfit("eval brushed.csv --ndf gtr --sigma 0.2,0.1 --gamma 2 --ks 1");
-	expect_error(2, "--ndf gtr does not allow these parameters");
+	expect_error(2, "gtr takes one sigma, the same in all directions");
 	stdfit("synth flat.binary --ndf ggx --sigma 0.3 --ks 0.5");
 	expect_code(0);
 	stdfit("fit flat.binary --anisotropic --ndf ggx -q");
@@ -263,6 +263,71 @@ static void a_fit_finds_what_synth_wrote(void **state)
 	expect_out("e-08, \"error_cosine\":");
 }
 
+/* GGX has nothing for facets that lean. */
+static void facets_that_lean_are_found(void **state)
+{
+	struct cook_torrance level = truth;
+
+	(void)state;
+	assert_int_equal(ndf_init(&truth.ndf, ndf_find("ellipsoid"), 0.3, 0.1, NAN), STATUS_OK);
+	assert_int_equal(ndf_turn(&truth.ndf, 20), STATUS_OK);
+	assert_int_equal(ndf_tilt(&truth.ndf, 0.15, -0.05), STATUS_OK);
+	write_samples("leaning.csv", 1500);
+	truth = level;
+	stdfit("fit leaning.csv --anisotropic --ndf ggx,ellipsoid -q -o leaning.fits.csv");
+	expect_code(0);
+	struct csv_table table = read_table("leaning.fits.csv");
+	char *const *ellipsoid = table.row[0], *const *ggx = table.row[1];
+	double tilt_x, tilt_y;
+
+	assert_string_equal(ellipsoid[RESULT_NDF], "ellipsoid");
+	assert_true(result_param(ellipsoid[RESULT_PARAMS], "tilt_x", &tilt_x));
+	assert_true(result_param(ellipsoid[RESULT_PARAMS], "tilt_y", &tilt_y));
+	check_abs(tilt_x, 0.15, 0.005, "tilt_x");
+	check_abs(tilt_y, -0.05, 0.005, "tilt_y");
+	check_rel(result_number(ellipsoid, RESULT_SIGMA_X), 0.3, 0.05, "sigma_x");
+	check_rel(result_number(ellipsoid, RESULT_SIGMA_Y), 0.1, 0.05, "sigma_y");
+	check_abs(result_number(ellipsoid, RESULT_ANGLE), 20, 1, "angle");
+	const double error = result_number(ellipsoid, RESULT_ERROR);
+
+	assert_true(error < 0.5 * result_number(ggx, RESULT_ERROR));
+	/* 5 % of noise: the mean of |g|. */
+	check_between(error, 0.03, 0.045, "E");
+	assert_true(result_number(ellipsoid, RESULT_ERROR_ISOTROPIC) == result_number(ggx, RESULT_ERROR_ISOTROPIC));
+	assert_string_equal(ggx[RESULT_PARAMS], "");
+	csv_table_free(&table);
+	/* The model of the row is the one that was fitted. */
+	stdfit("eval leaning.csv --from leaning.fits.csv --ndf ellipsoid --json");
+	expect_code(0);
+	check_rel(strtod(strstr(last.out, "\"error_none\": ") + 14, NULL), error, 1e-12, "E of the row");
+	stdfit("ndf --from leaning.fits.csv --row 1 --theta 10");
+	expect_out("tilt_x=0.1");
+}
+
+/* Where facets are level, the tilt is none, and E not above GGX's. */
+static void level_facets_stay_level(void **state)
+{
+	(void)state;
+	stdfit("fit brushed.csv --anisotropic --ndf ggx,ellipsoid -q -o level.fits.csv");
+	expect_code(0);
+	struct csv_table table = read_table("level.fits.csv");
+	char *const *ellipsoid = table.row[0], *const *ggx = table.row[1];
+	double tilt_x, tilt_y;
+
+	assert_true(result_param(ellipsoid[RESULT_PARAMS], "tilt_x", &tilt_x));
+	assert_true(result_param(ellipsoid[RESULT_PARAMS], "tilt_y", &tilt_y));
+	check_abs(hypot(tilt_x, tilt_y), 0, 0.005, "tilt");
+	assert_true(result_number(ellipsoid, RESULT_ERROR) <= result_number(ggx, RESULT_ERROR));
+	csv_table_free(&table);
+	/* Without axes it is GGX. */
+	stdfit("fit brushed.csv --ndf ggx,ellipsoid -q -o round.fits.csv");
+	expect_code(0);
+	table = read_table("round.fits.csv");
+	for (enum result_column c = RESULT_ERROR; c <= RESULT_LOG_ERROR; c++)
+		assert_string_equal(table.row[0][c], table.row[1][c]);
+	csv_table_free(&table);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -277,5 +342,15 @@ int main(void)
 		cmocka_unit_test(what_has_no_axes_is_refused),
 	};
 
-	return cmocka_run_group_tests_name("anisotropic", tests, set_up, leave_directory);
+	const struct CMUnitTest long_tests[] = {
+		cmocka_unit_test(facets_that_lean_are_found),
+		cmocka_unit_test(level_facets_stay_level),
+	};
+	const int failed = cmocka_run_group_tests_name("anisotropic", tests, set_up, NULL);
+
+	if (failed || case_step(2) > 1) {
+		(void)leave_directory(NULL);
+		return failed;
+	}
+	return cmocka_run_group_tests_name("anisotropic_long", long_tests, NULL, leave_directory);
 }

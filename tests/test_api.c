@@ -227,6 +227,59 @@ static void angles_and_directions_are_inverse(void **state)
 	expect(stdfit_angles_from_directions(1, wi, wo, NULL, &error), STDFIT_DOMAIN, "angles is NULL");
 }
 
+/* A matrix without skew is GGX in every function; with it only what needs a level surface is refused. */
+static void an_ellipsoid_does_what_others_do(void **state)
+{
+	const double level[9] = {0, 0.2, 0, 0.6, 0, 0, 0, 0, -2}, askew[9] = {0.3, 0, 0, 0, 0.1, 0, 0.1, -0.2, 1};
+	const double theta[3] = {0, 0.5, M_PI / 2}, Dx[3] = {2, 1, 0}, Dy[3] = {2, 0.3, 0.1};
+	const double w[6] = {0.48, 0.36, 0.8, -0.6, 0, 0.8}, u[4] = {0.2, 0.7, 0.9, 0.1}, steep[3] = {-0.8, 0.6, 0};
+	struct stdfit_model model = stdfit_model_default();
+	stdfit_ndf *ellipsoid, *ggx, *tilted, *table;
+	stdfit_measurement *measurement;
+	double a[6], b[6], value;
+
+	(void)state;
+	expect(stdfit_ndf_new_ellipsoid(&ellipsoid, level, &error), STDFIT_OK, "");
+	expect(stdfit_ndf_new_ellipsoid(&tilted, askew, &error), STDFIT_OK, "");
+	expect(stdfit_ndf_new_piecewise(&table, 3, theta, Dx, Dy, &error), STDFIT_OK, "");
+	expect(stdfit_ndf_new(&ggx, "ggx", 0.3, 0.1, 0, NULL, &error), STDFIT_OK, "");
+	for (enum stdfit_ndf_quantity q = STDFIT_D; q <= STDFIT_PDF; q++) {
+		expect(stdfit_ndf_evaluate(ellipsoid, q, 2, w, a, &error), STDFIT_OK, "");
+		expect(stdfit_ndf_evaluate(ggx, q, 2, w, b, &error), STDFIT_OK, "");
+		check_rel(a[0], b[0], 1e-14, "quantity");
+		check_rel(a[1], b[1], 1e-14, "quantity");
+		expect(stdfit_ndf_evaluate(tilted, q, 2, w, a, &error), STDFIT_OK, "");
+		assert_true(a[0] >= 0 && a[0] != b[0]);
+	}
+	model.kd[0] = 0.2;
+	expect(stdfit_model_evaluate(&model, ellipsoid, 1, w, w + 3, a, &error), STDFIT_OK, "");
+	expect(stdfit_model_evaluate(&model, ggx, 1, w, w + 3, b, &error), STDFIT_OK, "");
+	check_rel(a[0], b[0], 1e-14, "model");
+	expect(stdfit_ndf_sample(ellipsoid, 2, u, a, &error), STDFIT_OK, "");
+	expect(stdfit_ndf_sample(ggx, 2, u, b, &error), STDFIT_OK, "");
+	check_abs(a[4], b[4], 1e-14, "normal");
+	expect(stdfit_ndf_sample_visible(tilted, w, 2, u, a, &error), STDFIT_OK, "");
+	expect(stdfit_ndf_pdf_visible(tilted, w, 2, a, b, &error), STDFIT_OK, "");
+	expect(stdfit_ndf_weight(tilted, "correlated", w, 2, a, b, b + 2, &error), STDFIT_OK, "");
+	assert_true(b[0] > 0 && b[1] > 0 && b[2] >= 0 && b[2] <= 1 && b[3] >= 0 && b[3] <= 1);
+	expect(stdfit_dielectric_evaluate(tilted, NULL, 1.5, 1, w, w + 3, a, &error), STDFIT_UNSUPPORTED, "lean");
+	expect(stdfit_ndf_furnace(tilted, NULL, &value, &error), STDFIT_DOMAIN, "isotropic");
+	/* Two tables, too. */
+	expect(stdfit_model_evaluate(&model, table, 1, w, w + 3, a, &error), STDFIT_OK, "");
+	expect(stdfit_ndf_P2(table, 0.3, 0.2, &value, &error), STDFIT_OK, "");
+	assert_true(a[0] > 0.2 / M_PI && value > 0);
+	expect(stdfit_ndf_furnace(table, NULL, &value, &error), STDFIT_DOMAIN, "this pl is not");
+	expect(stdfit_ndf_moment(table, 0, 2, &value, &error), STDFIT_UNSUPPORTED, "no moments");
+	expect(stdfit_ndf_evaluate(table, STDFIT_D, 1, steep, a, &error), STDFIT_OK, "");
+	expect(stdfit_measurement_from_model(&measurement, &model, table, NULL, 180, &error), STDFIT_DOMAIN,
+	       "isotropic");
+	assert_null(measurement);
+	stdfit_ndf_free(ellipsoid);
+	stdfit_ndf_free(tilted);
+	stdfit_ndf_free(table);
+	stdfit_ndf_free(ggx);
+}
+
 static void energy_and_kurtosis_have_their_known_values(void **state)
 {
 	stdfit_ndf *ndf = new_ndf("std", 1e-3, 5), *skew = NULL;
@@ -413,6 +466,7 @@ int main(void)
 		cmocka_unit_test(null_and_nonsense_are_refused),
 		cmocka_unit_test(values_are_those_of_the_internals),
 		cmocka_unit_test(angles_and_directions_are_inverse),
+		cmocka_unit_test(an_ellipsoid_does_what_others_do),
 		cmocka_unit_test(energy_and_kurtosis_have_their_known_values),
 		cmocka_unit_test(a_fit_on_a_small_stack_recovers_its_parameters),
 		cmocka_unit_test(a_child_can_fit_on_one_thread),

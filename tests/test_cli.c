@@ -884,6 +884,47 @@ static void weights_stand_side_by_side(void **state)
 	expect_error(2, "--trace takes one --weight");
 }
 
+/* The row is that of the nodes; the other fit is told to the last digit, and what is certain besides. */
+static void how_certain_a_fit_is_stands_in_its_row(void **state)
+{
+	static const enum result_column told[] = {RESULT_ERROR, RESULT_KD_R, RESULT_KS_B, RESULT_SIGMA};
+	double value;
+	(void)state;
+	shell("\"$STDFIT\" synth c.binary --ndf ggx --sigma 0.2 --kd 0.3 --ks 0.5 --noise 0.1; for b in node centre "
+	      "both; do "
+	      "\"$STDFIT\" c.binary --ndf ggx --ior 1.5 --max-theta 20 -q --bins $b --intervals 5% -o c-$b.csv; done");
+	expect_code(0);
+	struct csv_table node = read_table("c-node.csv"), centre = read_table("c-centre.csv"),
+			 both = read_table("c-both.csv");
+	char *const *row = both.row[0];
+	assert_string_equal(node.row[0][RESULT_OTHER_BINS], "");
+	for (enum result_column c = 0; c < RESULT_COLUMNS; c++)
+		if (c != RESULT_SECONDS && c != RESULT_EVALUATIONS && c != RESULT_OPTIONS && c != RESULT_OTHER_BINS)
+			assert_string_equal(row[c], node.row[0][c]);
+	for (size_t t = 0; t < sizeof told / sizeof *told; t++) {
+		assert_true(result_param(row[RESULT_OTHER_BINS], result_columns[told[t]].name, &value));
+		assert_true(value == result_number(centre.row[0], told[t]));
+		assert_true(value != result_number(row, told[t]));
+	}
+	assert_true(result_number(row, RESULT_SIGMA_LO) < result_number(row, RESULT_SIGMA));
+	assert_true(result_number(row, RESULT_SIGMA_HI) > result_number(row, RESULT_SIGMA));
+	assert_string_equal(row[RESULT_IOR_LO], "");
+	assert_non_null(strstr(row[RESULT_OPTIONS], " bins=both "));
+	csv_table_free(&node);
+	csv_table_free(&centre);
+	csv_table_free(&both);
+	stdfit("c.binary --ndf ggx --ior 1.5 --max-theta 20 -q --bins both --intervals 5% --table");
+	expect_out("\n    sigma 0.1");
+	expect_out("\n    at bin centres E 0.");
+	expect_out(", sigma +");
+	stdfit("c.binary --bins nodes");
+	expect_error(2, "node, centre, both");
+	stdfit("compare c.binary --bins both");
+	expect_error(2, "node, centre");
+	stdfit("c.binary --no-specular --intervals 1%");
+	expect_error(2, "--intervals means nothing with --no-specular");
+}
+
 static void within_takes_the_simplest(void **state)
 {
 	(void)state;
@@ -1110,6 +1151,7 @@ int main(void)
 		cmocka_unit_test(output_into_head_ends_silently),
 		cmocka_unit_test(compare_summarises_tables),
 		cmocka_unit_test(weights_stand_side_by_side),
+		cmocka_unit_test(how_certain_a_fit_is_stands_in_its_row),
 		cmocka_unit_test(within_takes_the_simplest),
 		cmocka_unit_test(faults_of_the_data_are_told),
 		cmocka_unit_test(small_stacks_are_made_larger_or_told),

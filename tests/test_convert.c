@@ -340,6 +340,28 @@ static void noisy_samples_give_their_parameters_back(void **state)
 	assert_string_equal(last.out, "3\n");
 }
 
+/* Of a mirror on a goniometer nearly all that is measured is dark: a few entries, one above all, decide what the lobe is. */
+static void one_bright_entry_is_not_lost(void **state)
+{
+	(void)state;
+	unsigned seed = 3;
+	FILE *file = fopen("mirror.csv", "w");
+	assert_non_null(file);
+	fputs("theta_i,phi_i,theta_o,phi_o,value\n", file);
+	for (int n = 0; n < 8 * 9 * 10; n++)
+		fprintf(file, "%d,0,%d,%d,%.6g\n", 10 + n / 90 * 10, 5 + n / 10 % 9 * 10, n % 10 * 20,
+			0.004 + 0.001 * random_unit(&seed));
+	fputs("80,0,79,180,600\n70,0,68.9,180,16\n60,0,59.3,180,8\n50,0,50.2,180,8\n40,0,41.4,180,.3\n", file);
+	assert_int_equal(fclose(file), 0);
+	stdfit("mirror.csv -q --ndf ggx -o mirror-fits.csv");
+	expect_code(0);
+	struct csv_table fits = read_table("mirror-fits.csv");
+	/* Lambert alone has 1. */
+	check_between(result_number(fits.row[0], RESULT_ERROR), 0, 0.025, "E");
+	check_between(result_number(fits.row[0], RESULT_SIGMA), 0.003, 0.008, "sigma");
+	csv_table_free(&fits);
+}
+
 static void wrong_usage_is_refused(void **state)
 {
 	(void)state;
@@ -378,6 +400,7 @@ int main(void)
 		cmocka_unit_test(info_tells_what_is_in_a_file),
 		cmocka_unit_test(a_directory_has_the_known_files),
 		cmocka_unit_test(noisy_samples_give_their_parameters_back),
+		cmocka_unit_test(one_bright_entry_is_not_lost),
 		cmocka_unit_test(wrong_usage_is_refused),
 	};
 	return cmocka_run_group_tests(tests, enter_directory, leave_directory);

@@ -336,6 +336,26 @@ static void samples_follow_the_density(void **state)
 	}
 }
 
+/* Those of GGX in place of std's, and the rational fit. */
+static void substitutes_of_visible_normals_follow_their_density(void **state)
+{
+	(void)state;
+	const struct ndf std = facets("std", 0.5, 0.5, 3.0), ggx = facets("ggx", 0.4, 0.7, 2.0);
+	const struct light pseudo = {interface(&std, GAF_CORRELATED, 1.5), SAMPLING_PSEUDO,
+				     vec3_from_spherical_deg(55.0, 200.0)};
+	const struct light rational = {interface(&ggx, GAF_UNCORRELATED, 1.0 / 1.5), SAMPLING_RATIONAL,
+				       vec3_from_spherical_deg(130.0, 20.0)};
+	const struct ndf substitute = facets("ggx", 0.5, 0.5, 2.0);
+	const struct dielectric in_its_place = interface(&substitute, GAF_CORRELATED, 1.5);
+	const struct vec3 wo = vec3_from_spherical_deg(160.0, 30.0);
+	check_rel(pdf_of(&pseudo, wo), dielectric_pdf(&in_its_place, SAMPLING_VISIBLE, pseudo.wi, wo), 1e-14, "pseudo");
+	check_samples(&pseudo, 2, "pseudo");
+	check_samples(&rational, 2, "rational");
+	const struct dielectric_sample none =
+		dielectric_sample(&pseudo.dielectric, SAMPLING_RATIONAL, pseudo.wi, (double[]){0.1, 0.2, 0.3});
+	assert_true(isnan(none.wo.x));
+}
+
 /* All but smooth: Snell's and Fresnel's laws. */
 static void the_smooth_limit_is_that_of_snell_and_fresnel(void **state)
 {
@@ -446,6 +466,7 @@ int main(void)
 		cmocka_unit_test(one_event_sends_on_what_the_facets_do),
 		cmocka_unit_test(smooth_interfaces_lose_nothing),
 		cmocka_unit_test(samples_follow_the_density),
+		cmocka_unit_test(substitutes_of_visible_normals_follow_their_density),
 		cmocka_unit_test(the_smooth_limit_is_that_of_snell_and_fresnel),
 		cmocka_unit_test(G_of_a_transmission_is_the_mean_over_heights),
 		cmocka_unit_test(edges_and_refusals),

@@ -2,9 +2,11 @@
 /* stdfit export, read back: MERL and JSON to the bit, Mitsuba, pbrt and glTF by what their numbers mean; substitutes and
  * the errors they tell; refusals. The GLSL has a test of its own. Runs $STDFIT or build/stdfit. */
 #include "data_readers/merl.h"
+#include "data_readers/spectrum.h"
 #include "fit/error/model_table.h"
 #include "fit/error/sample_set.h"
 #include "fit/export/model_json.h"
+#include "gltf_buffer.h"
 #include "make_table.h"
 #include "run_program.h"
 #include "xml.h"
@@ -221,8 +223,8 @@ static void mitsuba_gets_a_substitute(void **state)
 
 	(void)state;
 	export_it(SMALL " --format mitsuba " LOBE " --ndf std --gamma 1.7 --sigma 0.2");
-	expect_out(
-		"<!-- approximate: Mitsuba 3 has no NDF std of gamma 1.7; ggx (gamma 2) was fitted in its place -->");
+	expect_out("<!-- approximate: Mitsuba 3 has no NDF std of gamma 1.7; ggx (gamma 2) was fitted in its place "
+		   "(format bsdf-rgb has the model itself) -->");
 	expect_out("error of the model 0, of what stands here");
 	const struct cook_torrance got = read_mitsuba();
 	assert_string_equal(ndf_name(got.ndf.class), "ggx");
@@ -255,7 +257,8 @@ static void mitsuba_blends_within_one(void **state)
 		truth.ks[c] = 0.9;
 	}
 	export_it(SMALL " --format mitsuba --kd 0.3 --ks 0.9 --ndf ggx --sigma 0.3 --ior 1.4");
-	expect_out("no kd + ks of 1.2, more than 1; ggx (gamma 2) was fitted in its place, with kd + ks up to 1 -->");
+	expect_out("no kd + ks of 1.2, more than 1; ggx (gamma 2) was fitted in its place, with kd + ks up to 1 "
+		   "(format bsdf-rgb has the model itself) -->");
 	struct cook_torrance got = read_mitsuba();
 	assert_true(got.kd[0] + got.ks[0] <= 1 + 1e-15);
 	assert_true(got.n > 1.4); /* reflects more */
@@ -310,21 +313,29 @@ static const char *parameter(const char *text, const char *name)
 	return at + strlen(name);
 }
 
-static struct cook_torrance read_pbrt(void)
+/* The pairs behind the name; n of them. */
+static size_t read_spectrum(const char *name, double *nm, double *value)
+{
+	const char *at = parameter(last.out, name);
+	size_t n = 0;
+	int used;
+
+	assert_memory_equal(at, " [", 2);
+	for (at += 2; sscanf(at, "%lf %lf%n", &nm[n], &value[n], &used) == 2; at += used)
+		assert_true(++n < 8);
+	assert_memory_equal(at, " ]", 2);
+	assert_true(n > 0 && nm[0] <= 360 && nm[n - 1] >= 830);
+	return n;
+}
+
+/* But for its index of refraction. */
+static struct cook_torrance read_pbrt_parts(void)
 {
 	struct cook_torrance model = {.gaf = GAF_CORRELATED, .fresnel = FRESNEL_CONDUCTOR};
-	double low, high;
 
 	assert_int_equal(sscanf(parameter(last.out, "\"rgb reflectance\""), " [ %lf %lf %lf ]", &model.kd[0],
 				&model.kd[1], &model.kd[2]),
 			 3);
-	assert_int_equal(sscanf(parameter(last.out, "\"spectrum eta\""), " [ %lf %lf %lf %lf ]", &low, &model.n, &high,
-				&model.n),
-			 4);
-	assert_true(low <= 360 && high >= 830);
-	assert_int_equal(
-		sscanf(parameter(last.out, "\"spectrum k\""), " [ %lf %lf %lf %lf ]", &low, &model.k, &high, &model.k),
-		4);
 	const double sigma = strtod(parameter(last.out, "\"float roughness\""), NULL);
 	parameter(last.out, "\"bool remaproughness\" false");
 	assert_int_equal(ndf_init(&model.ndf, ndf_find("ggx"), sigma, sigma, 2), STATUS_OK);
@@ -335,6 +346,20 @@ static struct cook_torrance read_pbrt(void)
 		model.kd[c] *= 1 - amount;
 		model.ks[c] = amount;
 	}
+	return model;
+}
+
+static struct cook_torrance read_pbrt(void)
+{
+	struct cook_torrance model = read_pbrt_parts();
+	double nm[8], value[8];
+
+	assert_int_equal(read_spectrum("\"spectrum eta\"", nm, value), 2);
+	assert_true(value[0] == value[1]);
+	model.n = value[0];
+	assert_int_equal(read_spectrum("\"spectrum k\"", nm, value), 2);
+	assert_true(value[0] == value[1]);
+	model.k = value[0];
 	return model;
 }
 
@@ -362,24 +387,119 @@ static void pbrt_says_what_it_can(void **state)
 	}
 	expect_stated("of what stands here ", error_on(&truth, &got));
 
-	/* One ks for all channels; kd is as good as it can be beside it. */
-	export_it(SMALL " --format pbrt " LOBE " --ndf ggx --sigma 0.23 --gaf correlated");
-	expect_out("# approximate: pbrt-v4 has no ks of its own for each channel; ggx (gamma 2) was fitted");
-	got = read_pbrt();
-	truth = given("ggx", 0.23, 2, 1.5);
-	truth.gaf = GAF_CORRELATED;
-	const double best = error_on(&truth, &got);
-	expect_stated("of what stands here ", best);
-	for (int c = 0; c < 3; c++)
-		for (double factor = 0.97; factor < 1.1; factor += 0.06) {
-			struct cook_torrance other = got;
-			other.kd[c] *= factor;
-			assert_true(error_on(&truth, &other) > best);
-		}
-	stdfit("export --format pbrt --ks 0.42,0.53,0.6 --ndf ggx --sigma 0.23");
-	expect_error(1, "would be lost");
 	stdfit("export --format pbrt --ks 0.5 --ndf ggx --sigma 0.0005 --gaf correlated");
 	expect_error(1, "for a mirror");
+}
+
+/* E of a function of two directions, on the entries of SMALL, weighted by solid angles: by its definition. */
+static double error_of_function(void (*shown)(const void *context, struct vec3 wi, struct vec3 wo, double f[3]),
+				const void *context, const struct cook_torrance *truth)
+{
+	double difference = 0, sum = 0;
+
+	/* Beyond theta_h, theta_d = 12 degrees one of the directions is. */
+	for (int i = 0; i * i <= 12 * 90; i++)
+		for (int j = 0; j <= 12; j++)
+			for (int k = 0; k < 180; k++) {
+				struct vec3 wi, wo;
+				double f[3], m[3];
+
+				halfdiff_trig_dirs(bins_trig(BINS_NODE, i, j, k), &wi, &wo);
+				if (!entry_in_range(wi, wo, max_theta_cos(12)))
+					continue;
+				shown(context, wi, wo, f);
+				cook_torrance_f(truth, wi, wo, m);
+				const double w = weight_at(WEIGHT_SOLID_ANGLE, i, j, wi.z, wo.z);
+				for (int c = 0; c < 3; c++) {
+					difference += w * fabs(f[c] - m[c]);
+					sum += w * m[c];
+				}
+			}
+	return difference / sum;
+}
+
+/* A coloured lobe, whose spectra have their colour under D65. */
+struct pbrt {
+	struct cook_torrance lobe; /* F = 1, ks = 1 */
+	size_t n;
+	double kd[3], amount, nm[8], eta[8], k[8], weight[3 * 8];
+};
+
+static struct pbrt read_coloured_pbrt(void)
+{
+	struct pbrt p = {.lobe = read_pbrt_parts()};
+
+	memcpy(p.kd, p.lobe.kd, sizeof p.kd);
+	p.amount = p.lobe.ks[0];
+	p.lobe.fresnel = FRESNEL_NONE;
+	p.n = read_spectrum("\"spectrum eta\"", p.nm, p.eta);
+	assert_int_equal(read_spectrum("\"spectrum k\"", p.nm, p.k), p.n);
+	assert_int_equal(spectrum_weights(p.nm, p.n, p.weight), STATUS_OK);
+	return p;
+}
+
+static void pbrt_f(const void *context, struct vec3 wi, struct vec3 wo, double f[3])
+{
+	const struct pbrt *p = context;
+	const double cos_d = vec3_dot(wi, vec3_unit(vec3_add(wi, wo)));
+	const double lobe = p->amount * cook_torrance_lobe(&p->lobe, wi, wo);
+	double F[8];
+
+	for (size_t j = 0; j < p->n; j++)
+		F[j] = fresnel_conductor(cos_d, p->eta[j], p->k[j]);
+	spectrum_rgb(p->weight, F, p->n, f);
+	for (int c = 0; c < 3; c++)
+		f[c] = p->kd[c] / M_PI + lobe * f[c];
+}
+
+static void pbrt_has_colours_in_its_index(void **state)
+{
+	static const struct {
+		const char *options;
+		enum fresnel fresnel;
+		double n, k, most; /* the error */
+	} models[] = {
+		{LOBE " --ndf ggx --sigma 0.23 --gaf correlated", FRESNEL_DIELECTRIC, 1.5, 0, 1e-4},
+		{LOBE " --ndf ggx --sigma 0.23 --gaf correlated --fresnel conductor --ior 1.3 --k 2", FRESNEL_CONDUCTOR,
+		 1.3, 2, 1e-4},
+		{"--ks 0.42,0.53,0.6 --ndf ggx --sigma 0.23 --gaf correlated --ior 4", FRESNEL_DIELECTRIC, 4, 0, 1e-4},
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
+		struct cook_torrance truth = given("ggx", 0.23, 2, models[i].n);
+		char arguments[200];
+		double f[3], want[3];
+		const struct vec3 up = {0, 0, 1};
+
+		truth.gaf = GAF_CORRELATED;
+		truth.fresnel = models[i].fresnel;
+		truth.k = models[i].k;
+		if (!strstr(models[i].options, "--kd"))
+			memset(truth.kd, 0, sizeof truth.kd);
+		snprintf(arguments, sizeof arguments, SMALL " --format pbrt %s", models[i].options);
+		export_it(arguments);
+		expect_out("# approximate: pbrt-v4 has no ks of its own for each channel (format bsdf has the model "
+			   "itself)");
+		const struct pbrt p = read_coloured_pbrt();
+		/* Along the normal it is the model, in each channel. */
+		pbrt_f(&p, up, up, f);
+		cook_torrance_f(&truth, up, up, want);
+		for (int c = 0; c < 3; c++)
+			check_rel(f[c], want[c], 1e-12, "value along the normal");
+		const double error = error_of_function(pbrt_f, &p, &truth);
+		/* A table's entries have 24 bits. */
+		check_abs(strtod(parameter(last.out, "of what stands here "), NULL), error, 1e-7, "error");
+		check_between(error, 0, models[i].most, models[i].options);
+	}
+	/* Of another distribution and G. */
+	const struct cook_torrance truth = given("std", 0.2, 1.7, 1.5);
+	export_it(SMALL " --format pbrt " LOBE " --ndf std --gamma 1.7 --sigma 0.2");
+	expect_out(
+		"pbrt-v4 has no NDF std of gamma 1.7, no uncorrelated G; ggx (gamma 2) was fitted in its place (format "
+		"bsdf has the model itself); the colour of its ks is in the index of refraction");
+	const struct pbrt p = read_coloured_pbrt();
+	expect_stated("of what stands here ", error_of_function(pbrt_f, &p, &truth));
 }
 
 /* glTF */
@@ -450,29 +570,14 @@ static void gltf_f(const struct gltf *g, struct vec3 l, struct vec3 v, double f[
 		f[c] = (1 - g->specular * most) * g->base[c] / M_PI + g->specular * fr[c] * D * V;
 }
 
+static void gltf_shown(const void *context, struct vec3 wi, struct vec3 wo, double f[3])
+{
+	gltf_f(context, wi, wo, f);
+}
+
 static double gltf_error(const struct gltf *g, const struct cook_torrance *truth)
 {
-	double difference = 0, sum = 0;
-
-	/* Beyond theta_h, theta_d = 12 degrees one of the directions is. */
-	for (int i = 0; i * i <= 12 * 90; i++)
-		for (int j = 0; j <= 12; j++)
-			for (int k = 0; k < 180; k++) {
-				struct vec3 wi, wo;
-				double f[3], m[3];
-
-				halfdiff_trig_dirs(bins_trig(BINS_NODE, i, j, k), &wi, &wo);
-				if (!entry_in_range(wi, wo, max_theta_cos(12)))
-					continue;
-				gltf_f(g, wi, wo, f);
-				cook_torrance_f(truth, wi, wo, m);
-				const double w = weight_at(WEIGHT_SOLID_ANGLE, i, j, wi.z, wo.z);
-				for (int c = 0; c < 3; c++) {
-					difference += w * fabs(f[c] - m[c]);
-					sum += w * m[c];
-				}
-			}
-	return difference / sum;
+	return error_of_function(gltf_shown, g, truth);
 }
 
 /* No neighbour is better, beyond what the fit's choice of entries leaves open. */
@@ -909,7 +1014,7 @@ static void refusals_are_one_line(void **state)
 		{"--kd 1 --format json -o none/x.json", 1, "none/x.json"},
 		{"--kd 1 --format json -o /dev/full", 1, "/dev/full"},
 		{"--kd 1 --format merl -o /dev/full", 1, "/dev/full"},
-		{"--sigma 0.2 --gamma 1.7 --format pbrt --ks 0.1,0.2,0.3 -o left.pbrt", 1, "--format bsdf has"},
+		{"--sigma 0.0005 --ndf ggx --gaf correlated --format pbrt --ks 0.5 -o left.pbrt", 1, "for a mirror"},
 	};
 
 	(void)state;
@@ -940,27 +1045,6 @@ static void refusals_are_one_line(void **state)
 	assert_string_equal(last.out, "");
 }
 
-/* The bytes of the one buffer, decoded. */
-static unsigned char *buffer_of(const json_t *gltf, size_t *size)
-{
-	static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-	const json_t *buffer = json_array_get(json_object_get(gltf, "buffers"), 0);
-	const char *at = strchr(json_string_value(json_object_get(buffer, "uri")), ',') + 1;
-	unsigned char *bytes = malloc(strlen(at));
-	unsigned bits = 0;
-
-	assert_non_null(bytes);
-	*size = 0;
-	for (int n = 1; *at; at++, n++) {
-		assert_non_null(strchr(digits, *at));
-		bits = bits << 6 | (unsigned)(strchr(digits, *at) - digits);
-		for (int shift = 16; n % 4 == 0 && shift >= 0; shift -= 8)
-			bytes[(*size)++] = (unsigned char)(bits >> shift & 255);
-	}
-	assert_int_equal(*size, json_integer_value(json_object_get(buffer, "byteLength")));
-	return bytes;
-}
-
 /* The sphere that a viewer shows: a unit sphere, closed, its triangles seen from outside. */
 static void gltf_has_a_sphere(void **state)
 {
@@ -972,7 +1056,7 @@ static void gltf_has_a_sphere(void **state)
 	export_it(SMALL " --format gltf " LOBE " --ndf ggx --sigma 0.09 --gaf correlated --fresnel schlick");
 	json_t *gltf = json_loads(last.out, JSON_REJECT_DUPLICATES, &error);
 	assert_non_null(gltf);
-	unsigned char *bytes = buffer_of(gltf, &size);
+	unsigned char *bytes = gltf_buffer(gltf, &size);
 	const json_t *accessors = json_object_get(gltf, "accessors");
 	const size_t n = (size_t)member_number(json_array_get(accessors, 0), "count");
 	const size_t vertices = (size_t)member_number(json_array_get(accessors, 1), "count");
@@ -1004,20 +1088,33 @@ static void gltf_has_a_sphere(void **state)
 	free(bytes);
 }
 
-/* Where node finds gltf-validator of npm (NODE_PATH): no error, warning, information or hint. */
+/* Where gltf-validator is installed (`make page-tools`, or npm's global packages): no error, warning, information or
+ * hint. */
 static void gltf_validator_takes_it(void **state)
 {
+	static const char *const models[] = {
+		LOBE " --ndf ggx --sigma 0.09 --ior 40 --gaf correlated --fresnel schlick",
+		LOBE " --ndf ggx --sigma 0.3,0.1 --angle 20",
+		"--kd 0.31,0.12,0.047",
+	};
+
 	(void)state;
-	shell("node -e 'require(\"gltf-validator\")'");
+	shell("for root in \"$(dirname \"${STDFIT:-build/stdfit}\")/npm/node_modules\" \"$(npm root -g)\"; do "
+	      "[ ! -e \"$root/gltf-validator\" ] || { printf %s \"$root\"; exit; }; done; exit 1");
 	if (last.code != 0)
 		skip_for_want_of("the npm package gltf-validator");
-	export_it(SMALL " --format gltf " LOBE
-			" --ndf ggx --sigma 0.09 --ior 40 --gaf correlated --fresnel schlick -o v.gltf");
-	shell("node -e 'require(\"gltf-validator\").validateBytes(new "
-	      "Uint8Array(require(\"fs\").readFileSync(\"v.gltf\")))"
-	      ".then(r => console.log(JSON.stringify(r.issues.messages)))'");
-	expect_code(0);
-	assert_string_equal(last.out, "[]\n");
+	assert_int_equal(setenv("NODE_PATH", last.out, 1), 0);
+	for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
+		char arguments[200];
+
+		snprintf(arguments, sizeof arguments, SMALL " --format gltf %s -o v.gltf", models[i]);
+		export_it(arguments);
+		shell("node -e 'require(\"gltf-validator\").validateBytes(new "
+		      "Uint8Array(require(\"fs\").readFileSync(\"v.gltf\")))"
+		      ".then(r => console.log(JSON.stringify(r.issues.messages)))'");
+		expect_code(0);
+		assert_string_equal(last.out, "[]\n");
+	}
 }
 
 int main(void)
@@ -1030,6 +1127,7 @@ int main(void)
 		cmocka_unit_test(mitsuba_blends_within_one),
 		cmocka_unit_test(xmllint_takes_it),
 		cmocka_unit_test(pbrt_says_what_it_can),
+		cmocka_unit_test(pbrt_has_colours_in_its_index),
 		cmocka_unit_test(gltf_is_fitted_in_its_own_terms),
 		cmocka_unit_test(merl_is_the_model),
 		cmocka_unit_test(an_index_for_each_channel_is_replaced),

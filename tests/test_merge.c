@@ -282,6 +282,19 @@ static void shares_with_within_make_the_whole(void **state)
 	shell("sed 's/,ggx,/,std,/' within-2.csv >rival.csv");
 	refuse("within-1.csv within-2.csv rival.csv", "differs in ndf from 'within-2.csv' row");
 	refuse("within-1.csv p-2.csv", "made with other options");
+	/* Under several weights it has one of each; a file that failed has a row of each NDF. */
+	stdfit("all " CHEAP " --within 1% --weight none,cosine -q -o weights.csv");
+	expect_code(1);
+	shell("\"$STDFIT\" merge weights.csv all -o merged_weights.csv && cut -d, -f1,2,3,17 merged_weights.csv >a && "
+	      "cut -d, -f1,2,3,17 weights.csv >b && cmp a b");
+	expect_code(0);
+	static const char *const without[] = {"B", "f", "short"};
+	for (size_t i = 0; i < sizeof without / sizeof *without; i++) {
+		char command[128];
+		snprintf(command, sizeof command, "grep -v '^%s,.*,cosine,' weights.csv >lacks.csv", without[i]);
+		shell(command);
+		refuse("lacks.csv", "for cosine, as in 'lacks.csv' row");
+	}
 }
 
 int main(void)

@@ -23,6 +23,7 @@ static const struct {
 	{"t-family", {2.000002, 2.0001, 2.5, 7.31, 170.0, 1e6, INFINITY}},
 	{"gtr", {0.05, 0.71, 1.0, 1.31, 2.0, 5.7, 60.0}},
 	{"low", {0.05, 0.5, 1.0, 1.5, 2.0, 2.31, 60.0, 1e3}},
+	{"ellipsoid", {2.0}},
 };
 
 enum { SHAPES = sizeof(shapes) / sizeof(shapes[0]) };
@@ -494,6 +495,7 @@ static void corners_of_the_domain_stay_finite(void **state)
 		{"t-family", {2.0000011, 2.5, 1e3, 1e17, 1e300, INFINITY}},
 		{"gtr", {1e-300, 0.5, 0.9999999999999999, 1.0, 2.6}},
 		{"low", {1e-15, 0.5, 0.9999999999999999, 1.0, 2.0, 1e3}},
+		{"ellipsoid", {2.0}},
 	};
 	for (int c = 0; c < SHAPES; c++) {
 		for (int g = 0; extremes[c].gamma[g] > 0.0; g++) {
@@ -574,7 +576,8 @@ static void every_class_is_found_by_its_name(void **state)
 			continue;
 		}
 		assert_ptr_equal(ndf_find(ndf_name(class)), class);
-		assert_int_equal(ndf_has_gamma(class), class != ndf_find("ggx") && class != ndf_find("beckmann"));
+		assert_int_equal(ndf_has_gamma(class), class != ndf_find("ggx") && class != ndf_find("beckmann") &&
+							       class != ndf_find("ellipsoid"));
 		bool covered = false;
 		for (int i = 0; i < SHAPES; i++)
 			covered |= strcmp(shapes[i].name, ndf_name(class)) == 0;
@@ -652,8 +655,8 @@ static void plain_is_the_same_distribution_by_another_name(void **state)
 {
 	(void)state;
 	for_all(check_plain);
-	/* std twice, ggx, beckmann, hyper-cauchy, t-family, gtr; six roughnesses each. */
-	assert_true(n_plain == 7 * 6);
+	/* std twice, ggx, beckmann, hyper-cauchy, t-family, gtr, ellipsoid; six roughnesses each. */
+	assert_true(n_plain == 8 * 6);
 	struct ndf low = ndf_make("low", 0.3, 0.3, 2.0), rational = ndf_make("std", 0.3, 0.3, 2.0), plain;
 	assert_false(ndf_plain(&low, &plain));
 	assert_true(ndf_plain(&rational, &plain));

@@ -666,7 +666,7 @@ static void wrong_usage_is_refused(void **state)
 		{"ndf std --sigma 0.2 --gamma 2 --theta 1,,2", 2, "bad angles"},
 		{"ndf ggx --sigma 0.2 --theta 0:90:0.1 --phi 0:360:0.2", 2, "901 angles theta and 1801 phi: expected"},
 		{"ndf nix --sigma 0.2 --theta 1", 2, "no NDF 'nix'"},
-		{"sample ellipsoid --sigma 0.2 --gaf correlated", 2, "--gaf means nothing for ellipsoid"},
+
 		{"ndf std --sigma 0.2 --theta 1", 2, "std needs gamma"},
 		{"ndf gtr --sigma 0.2,0.3 --gamma 2 --theta 1", 2, "gtr takes one sigma"},
 		{"ndf std --sigma 0.2 --gamma 1.5 --theta 1", 2, "bad gamma 1.5: std takes one above 1.5, up to inf"},
@@ -695,7 +695,8 @@ static void wrong_usage_is_refused(void **state)
 		{"ndf std --sigma 0.2 --gamma 3 --theta 1 --lambda trapezoid", 2, "std has no Lambda trapezoid"},
 		{"ndf low --sigma 0.2,0.3 --params 'B=1;C=2' --theta 1", 2, "low takes one sigma"},
 		{"ndf t-family --sigma 0.2,0 --gamma 3 --params x=1 --theta 1", 2, "bad sigma 0: t-family takes"},
-		{"sample ellipsoid --sigma 0.2 --theta-i 3 --sampling ndf", 2, "ellipsoid has no --sampling ndf"},
+		{"sample ellipsoid --sigma 0.2 --params tilt_x=0.1 --theta-i 3 --sampling pseudo", 2,
+		 "ellipsoid has no --sampling pseudo"},
 		{"sample std --sigma 0.2 --gamma 2 --count 0", 2, "--count"},
 	};
 

@@ -106,6 +106,33 @@ static void the_ndf_is_read_off_the_table(void **state)
 	}
 }
 
+/* What a model has beside its first lobe is no part of that lobe's D, and F82 has an F for each channel. */
+static void other_terms_are_no_part_of_the_ndf(void **state)
+{
+	(void)state;
+	struct cook_torrance truth = make_model("ggx", 0.17, 2, 1.62);
+	struct measured_ndf ndf;
+	truth.gaf = GAF_V_GROOVE;
+	truth.fresnel = FRESNEL_F82;
+	truth.second = make_model("ggx", 0.6, 2, 1.62).ndf;
+	truth.grazing = 4;
+	for (int c = 0; c < 3; c++) {
+		truth.kg[c] = 0.3;
+		truth.ks_second[c] = 0.4;
+		truth.reflectance[c][0] = 0.1 + 0.2 * c;
+		truth.reflectance[c][1] = 0.5 + 0.1 * c;
+		truth.reflectance[c][2] = 1;
+	}
+	struct measurement measurement = make_table(&truth, 180, BINS_NODE, 0);
+	assert_int_equal(measured_ndf_make(&measurement, &truth, BINS_NODE, &ndf), STATUS_OK);
+	for (int i = 0; i < 84; i += 3) {
+		const struct halfdiff_trig h = bins_trig(BINS_NODE, i, 0, 0);
+		check_rel(ndf.D[i], ndf_D(&truth.ndf, (struct vec3){h.sin_h, 0, h.cos_h}), 1e-4, "D");
+	}
+	measured_ndf_free(&ndf);
+	measurement_free(&measurement);
+}
+
 /* A perfect fit: no normalisation is needed, and G1 is the fit's own. */
 static void a_perfect_fit_reads_itself(void **state)
 {
@@ -497,6 +524,7 @@ int main(void)
 		cmocka_unit_test(the_map_adds_up_to_the_error),
 		cmocka_unit_test(a_row_of_the_map_is_what_the_model_says),
 		cmocka_unit_test(the_ndf_is_read_off_the_table),
+		cmocka_unit_test(other_terms_are_no_part_of_the_ndf),
 		cmocka_unit_test(a_perfect_fit_reads_itself),
 		cmocka_unit_test(a_dip_of_a_free_form_raises_no_tail),
 		cmocka_unit_test(no_ndf_where_there_is_none),

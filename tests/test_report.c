@@ -196,6 +196,41 @@ static void files_are_fitted_first(void **state)
 	expect_in_page("none/index.html", "failed: cannot read", true);
 }
 
+/* A model of many terms: all of it is shown and copied; below its values stand their intervals. */
+static void richer_models_and_intervals_are_shown(void **state)
+{
+	static const char set[] =
+		"kg_r=0.1;kg_g=0.2;kg_b=0.3;exponent=4;ks2_r=0.4;ks2_g=0.3;ks2_b=0.2;sigma2=0.5;gamma2=2;"
+		"sigma_lo=0.0001;sigma_hi=0.25;open_ends=sigma_lo;other_bins=error=0.5|sigma=0.3";
+	(void)state;
+	char *command;
+	assert_true(asprintf(&command,
+			     "awk -F, -v OFS=, -v set='%s' 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; "
+			     "n = split(set, s, \";\"); print } NR > 1 && $2 == \"ggx\" { for (i = 1; i <= n; i++) { "
+			     "e = index(s[i], \"=\"); v = substr(s[i], e + 1); gsub(/[|]/, \";\", v); "
+			     "$(at[substr(s[i], 1, e - 1)]) = v } print; exit }' fits.csv >rich.csv && "
+			     "PATH=/nowhere \"$STDFIT\" report rich.csv -o rich -q " SPHERES,
+			     set) > 0);
+	shell(command);
+	free(command);
+	drop_no_png();
+	expect_code(0);
+	expect_in_page("rich/index.html", "<th scope=\"col\" class=\"n\">exponent</th>", true);
+	expect_in_page("rich/index.html", "<td class=\"n\" data-v=\"0.5\">0.5</td>", true);
+	expect_in_page("rich/index.html", "0.2<span class=\"range\">&#60;=0.0001 to 0.25</span></td>", true);
+	expect_in_page("rich/index.html", "<p>ggx with entries at the centres of the bins: E 0.5, sigma +50 %.</p>",
+		       true);
+	expect_in_page("rich/index.html", "sigma_lo", false);
+	shell("set -- $(sed -n 's/.*<tr data-options=\"\\([^\"]*\\)\".*/\\1/p' rich/index.html) && \"$STDFIT\" eval "
+	      "a.binary "
+	      "\"$@\" --max-theta 20 >options.out && \"$STDFIT\" eval a.binary --from rich.csv >row.out && cmp "
+	      "options.out "
+	      "row.out && grep -c , options.out");
+	assert_string_equal(last.err, "");
+	expect_code(0);
+	assert_string_equal(last.out, "2\n");
+}
+
 /* Where another weight would look much better the page says so, unless it has that fit, too; so does fit on a terminal. */
 static void another_weight_is_hinted_at(void **state)
 {
@@ -208,6 +243,8 @@ static void another_weight_is_hinted_at(void **state)
 	shell("grep -c 'class=.hint' hint/index.html; grep -c 'class=.hint' hints/index.html");
 	assert_string_equal(last.out, "1\n0\n");
 	expect_in_page("hints/index.html", "<th scope=\"row\">ggx, solid-angle</th>", true);
+	expect_in_page("hints/index.html", "<title>stdfit: fits of 2 materials</title>", true);
+	expect_in_page("hints/index.html", ">noisy</a></th><td>solid-angle</td>", true);
 	expect_in_page("hint/index.html", "<th scope=\"row\">ggx</th>", true);
 	shell("command -v script");
 	if (last.code)
@@ -361,6 +398,7 @@ int main(void)
 		cmocka_unit_test(a_table_becomes_a_page),
 		cmocka_unit_test(a_browser_shows_it_without_errors),
 		cmocka_unit_test(files_are_fitted_first),
+		cmocka_unit_test(richer_models_and_intervals_are_shown),
 		cmocka_unit_test(another_weight_is_hinted_at),
 		cmocka_unit_test(without_gnuplot),
 		cmocka_unit_test(what_is_missing_is_told),

@@ -136,6 +136,30 @@ static void between_nodes_the_interpolant_converges_to_the_BRDF(void **state)
 	check_between(error, 0, interpolant_error(&coarse) / 2.5, "mean error with half as many nodes, over 2.5");
 }
 
+/* The files are so coarse that how one interpolates is most of the value. */
+static void values_match_golden_rows(void **state)
+{
+	(void)state;
+	const struct rgl_spec spec[] = {{1, 5, 9, 3, 0, 0, 1.5, false, true, smooth},
+					{9, 4, 7, 3, -pi, pi, 1.5, false, true, twisted}};
+	struct measurement m[2];
+	struct golden golden =
+		golden_open("tests/golden/rgl_values.csv", "file,theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b");
+	for (int k = 0; k < 2; k++)
+		read_spec(&spec[k], &m[k]);
+	while (golden_next(&golden)) {
+		const double *v = golden.value;
+		double f[3];
+		const struct rgl *rgl = m[!strcmp(golden.text[0], "anisotropic")].rgl;
+		assert_true(rgl_f(rgl, direction(v[1], v[2]), direction(v[3], v[4]), f));
+		for (int c = 0; c < 3; c++)
+			check_rel(f[c], v[5 + c], 2e-6, golden.label);
+	}
+	assert_int_equal(golden.rows, 24);
+	for (int k = 0; k < 2; k++)
+		measurement_free(&m[k]);
+}
+
 static void azimuths_of_a_half_and_a_quarter_stand_for_the_whole_circle(void **state)
 {
 	(void)state;
@@ -409,6 +433,7 @@ int main(void)
 		cmocka_unit_test(entries_of_an_anisotropic_file_have_the_values_of_its_BRDF),
 		cmocka_unit_test(a_file_that_is_not_divided_by_its_distribution_gives_the_same_BRDF),
 		cmocka_unit_test(between_nodes_the_interpolant_converges_to_the_BRDF),
+		cmocka_unit_test(values_match_golden_rows),
 		cmocka_unit_test(azimuths_of_a_half_and_a_quarter_stand_for_the_whole_circle),
 		cmocka_unit_test(symmetry_is_that_of_the_azimuths),
 		cmocka_unit_test(solid_angles_add_up_to_the_hemispheres),

@@ -30,7 +30,7 @@ static struct cook_torrance truth_of(enum kind kind, const char *ndf)
 			truth.grazing = 3;
 			truth.kg[c] = 0.3 - 0.1 * c;
 		} else {
-			truth.ks_second[c] = 0.7 - 0.2 * c;
+			truth.ks_second[c] = 0.5 - 0.15 * c;
 		}
 	}
 	if (kind == TWO_LOBES && ndf_init(&truth.second, truth.ndf.class, 0.6, 0.6, 2) != STATUS_OK)
@@ -81,6 +81,39 @@ static void parameters_come_back(void **state)
 			check_rel(r.model.second.sigma_x, 0.6, 0.03, "sigma of the second lobe");
 		measurement_free(&measurement);
 	}
+}
+
+/* Lobes that send back more than one may are not fitted so, nor taken for one of a ks beyond 1. */
+static void two_lobes_share_the_bound_of_one(void **state)
+{
+	struct cook_torrance truth = truth_of(TWO_LOBES, "ggx");
+	struct fit_options o = options_for("ggx");
+
+	(void)state;
+	for (int c = 0; c < 3; c++)
+		truth.ks_second[c] = 0.9 - 0.1 * c;
+	struct measurement measurement = make_scattered(&truth, 1500, 0, 9);
+
+	o.lobes = 2;
+	for (int gray = 0; gray < 3; gray++) {
+		o.gray = gray == 1;
+		o.gray_specular = gray == 2;
+		const struct fit_result r = run(&measurement, &o);
+
+		double most = 0;
+
+		for (int c = 0; c < 3; c++)
+			most = fmax(most, r.model.ks[c] + r.model.ks_second[c]);
+		check_between(most, 0.999, 1 + 1e-6, "ks of both lobes");
+	}
+	o.gray_specular = false;
+	o.unbounded = true;
+	const struct fit_result r = run(&measurement, &o);
+
+	assert_true(r.error < 1e-3);
+	for (int c = 0; c < 3; c++)
+		check_rel(r.model.ks[c] + r.model.ks_second[c], truth.ks[c] + truth.ks_second[c], 0.01, "unbounded");
+	measurement_free(&measurement);
 }
 
 /* Data of another kind than each model: what the simpler one reaches is never lost. */
@@ -177,6 +210,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(parameters_come_back),
+		cmocka_unit_test(two_lobes_share_the_bound_of_one),
 		cmocka_unit_test(a_richer_model_never_loses),
 		cmocka_unit_test(rows_bring_models_back),
 		cmocka_unit_test(what_does_not_go_together_is_refused),

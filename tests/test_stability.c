@@ -6,6 +6,7 @@
 #include "make_table.h"
 #include "src/cook_torrance.h"
 #include "src/ellipsoid.h"
+#include "src/ndf_cdf.h"
 #include "src/ndf_slopes.h"
 #include "src/pwl.h"
 #include "src/vndf.h"
@@ -83,6 +84,33 @@ static void extreme_distributions_stay_finite(void **state)
 			}
 		assert_true(made >= COUNT(extreme_sigma));
 	}
+}
+
+/* Shares of normals, and of visible slopes, from the normal to the horizon: within [0, 1], without an exception. */
+static void extreme_shares_stay_in_range(void **state)
+{
+	(void)state;
+	for (int d = 0; ndf_at(d); d++)
+		for (int i = 0; i < COUNT(extreme_sigma) * COUNT(extreme_gamma) && !ndf_is_tabulated(ndf_at(d)); i++) {
+			const double sigma = extreme_sigma[i % COUNT(extreme_sigma)];
+			struct vec3 w[EXTREME_DIRECTIONS];
+			struct ndf ndf;
+			if (ndf_init(&ndf, ndf_at(d), sigma, sigma, extreme_gamma[i / COUNT(extreme_sigma)]) !=
+			    STATUS_OK)
+				continue;
+			extreme_directions(sigma, w);
+			feclearexcept(FE_ALL_EXCEPT);
+			for (int k = 0; k < EXTREME_DIRECTIONS; k++) {
+				check_between(ndf_cdf_theta(&ndf, atan2(w[k].x, w[k].z), 0.3), 0.0, 1.0,
+					      ndf_name(ndf.class));
+				double along = 0.5, across = 0.5;
+				if (vndf_supports(&ndf))
+					vndf_cdf(&ndf, w[k], w[(k + i) % EXTREME_DIRECTIONS], &along, &across);
+				check_between(along, 0.0, 1.0, "visible slope along");
+				check_between(across, 0.0, 1.0, "visible slope across");
+				no_exception(ndf_name(ndf.class));
+			}
+		}
 }
 
 /* The whole lobe over pairs of extreme directions: finite, not negative, the same both ways. */
@@ -241,6 +269,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(extreme_distributions_stay_finite),
+		cmocka_unit_test(extreme_shares_stay_in_range),
 		cmocka_unit_test(extreme_lobes_stay_finite_and_reciprocal),
 		cmocka_unit_test(a_lobe_outlives_the_underflow_of_G),
 		cmocka_unit_test(large_gamma_matches_references),

@@ -5,15 +5,11 @@
 
 #include "fit/search/fit.h"
 #include "fit/stdfit.h"
-#include "src/ellipsoid.h"
 #include "src/pwl.h"
 
 struct stdfit_ndf {
-	enum { API_NDF_CLASS, API_NDF_PIECEWISE, API_NDF_ELLIPSOID } kind;
-	struct ndf ndf; /* of a class, and of an isotropic piecewise one */
-	bool anisotropic_table;
-	struct pwl pwl;
-	struct ellipsoid ellipsoid;
+	struct ndf ndf;
+	struct pwl pwl; /* the table of ndf, if that is pl */
 };
 
 struct stdfit_measurement {
@@ -42,8 +38,11 @@ MUST_CHECK enum stdfit_status api_pairs(size_t n, const double *wi, const double
 					const char *name, struct stdfit_error *error);
 /* api_numbers - whether n numbers are there and in [0, 1). */
 MUST_CHECK enum stdfit_status api_numbers(size_t n, const double *u, struct stdfit_error *error);
-/* api_class_ndf - the NDF as the models know it; STDFIT_UNSUPPORTED for those that they do not. */
-MUST_CHECK enum stdfit_status api_class_ndf(const struct stdfit_ndf *ndf, const struct ndf **inner,
+/* api_ndf - the NDF as the models know it.
+ * api_level_ndf - the same, of facets that are level on average; else STDFIT_UNSUPPORTED. */
+MUST_CHECK enum stdfit_status api_ndf(const struct stdfit_ndf *ndf, const struct ndf **inner,
+				      struct stdfit_error *error);
+MUST_CHECK enum stdfit_status api_level_ndf(const struct stdfit_ndf *ndf, const struct ndf **inner,
 					    struct stdfit_error *error);
 /* api_index - whether n and k are in the range of this form of F. */
 MUST_CHECK enum stdfit_status api_index(enum fresnel fresnel, double n, double k, struct stdfit_error *error);
@@ -51,7 +50,7 @@ MUST_CHECK enum stdfit_status api_index(enum fresnel fresnel, double n, double k
 MUST_CHECK enum stdfit_status api_model(const struct stdfit_model *model, const struct stdfit_ndf *ndf,
 					struct cook_torrance *inner, struct stdfit_error *error);
 
-/* api_isotropic - whether sigma_x and sigma_y are one. */
+/* api_isotropic - whether D is the same at all azimuths. */
 MUST_CHECK enum stdfit_status api_isotropic(const struct ndf *ndf, struct stdfit_error *error);
 
 static inline void api_put(double *out, struct vec3 v)

@@ -211,7 +211,6 @@ static enum status hand_over(struct fit_result *from, struct stdfit_result *to)
 		return STATUS_NO_MEMORY;
 	to->distribution->ndf = m->ndf;
 	if (from->pwl) {
-		to->distribution->kind = API_NDF_PIECEWISE;
 		to->distribution->pwl = *from->pwl;
 		ndf_from_pwl(&to->distribution->ndf, &to->distribution->pwl);
 		free(from->pwl);

@@ -156,6 +156,8 @@ enum stdfit_status stdfit_measurement_from_model(stdfit_measurement **measuremen
 		return status;
 	status = api_model(model, ndf, &inner, error);
 	if (status == STDFIT_OK)
+		status = api_isotropic(&inner.ndf, error);
+	if (status == STDFIT_OK)
 		status = api_bins(bins, &where, error);
 	if (status == STDFIT_OK)
 		status = check_n_phi_d(n_phi_d, error);

@@ -25,7 +25,7 @@ enum stdfit_status api_model(const struct stdfit_model *model, const struct stdf
 			     struct cook_torrance *inner, struct stdfit_error *error)
 {
 	const struct ndf *distribution;
-	enum stdfit_status status = api_class_ndf(ndf, &distribution, error);
+	enum stdfit_status status = api_ndf(ndf, &distribution, error);
 
 	if (status != STDFIT_OK)
 		return status;
@@ -53,6 +53,9 @@ enum stdfit_status api_isotropic(const struct ndf *ndf, struct stdfit_error *err
 	if (ndf->sigma_x != ndf->sigma_y)
 		return api_fail(error, STATUS_DOMAIN, "expected an isotropic NDF: sigma_x is %g and sigma_y %g",
 				ndf->sigma_x, ndf->sigma_y);
+	if (ndf_is_anisotropic(ndf))
+		return api_fail(error, STATUS_DOMAIN, "expected an isotropic NDF: this %s is not",
+				ndf_name(ndf->class));
 	return STDFIT_OK;
 }
 

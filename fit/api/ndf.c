@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/api/api.h"
+#include "src/ellipsoid.h"
 #include "src/energy.h"
 #include "src/ndf_class.h"
 #include "src/ndf_slopes.h"
@@ -80,8 +81,6 @@ enum stdfit_status stdfit_ndf_new_piecewise(stdfit_ndf **ndf, int n_nodes, const
 
 	if (status != STDFIT_OK)
 		return status;
-	(*ndf)->kind = API_NDF_PIECEWISE;
-	(*ndf)->anisotropic_table = Dy != NULL;
 	if (!theta || !Dx || n_nodes < 2 || n_nodes > PWL_NODES_MAX)
 		status = api_fail(error, STATUS_DOMAIN, "expected theta, Dx and 2 .. %d nodes, found %d", PWL_NODES_MAX,
 				  n_nodes);
@@ -98,12 +97,12 @@ enum stdfit_status stdfit_ndf_new_ellipsoid(stdfit_ndf **ndf, const double A[9],
 
 	if (status != STDFIT_OK)
 		return status;
-	(*ndf)->kind = API_NDF_ELLIPSOID;
 	if (!A)
 		return give_up(ndf, api_fail(error, STATUS_DOMAIN, "A is NULL"));
 	const double rows[3][3] = {{A[0], A[1], A[2]}, {A[3], A[4], A[5]}, {A[6], A[7], A[8]}};
+	struct ellipsoid ellipsoid;
 
-	if (ellipsoid_init(&(*ndf)->ellipsoid, rows) != STATUS_OK)
+	if (ellipsoid_init(&ellipsoid, rows) != STATUS_OK || ndf_from_ellipsoid(&(*ndf)->ndf, &ellipsoid) != STATUS_OK)
 		status = api_fail(error, STATUS_DOMAIN, "A is singular, or not finite");
 	return give_up(ndf, status);
 }
@@ -115,39 +114,24 @@ void stdfit_ndf_free(stdfit_ndf *ndf)
 	free(ndf);
 }
 
-enum stdfit_status api_class_ndf(const struct stdfit_ndf *ndf, const struct ndf **inner, struct stdfit_error *error)
+enum stdfit_status api_ndf(const struct stdfit_ndf *ndf, const struct ndf **inner, struct stdfit_error *error)
 {
 	if (!ndf)
 		return api_fail(error, STATUS_DOMAIN, "ndf is NULL");
-	if (ndf->kind == API_NDF_ELLIPSOID || ndf->anisotropic_table)
-		return api_fail(error, STATUS_UNSUPPORTED,
-				"not of an ellipsoid nor an anisotropic piecewise distribution");
 	*inner = &ndf->ndf;
 	return STDFIT_OK;
 }
 
-static double ellipsoid_value(const struct ellipsoid *e, enum stdfit_ndf_quantity quantity, struct vec3 m)
+enum stdfit_status api_level_ndf(const struct stdfit_ndf *ndf, const struct ndf **inner, struct stdfit_error *error)
 {
-	const double D_or_G1 = quantity == STDFIT_G1 ? ellipsoid_G1(e, m) : ellipsoid_D(e, m);
+	const enum stdfit_status status = api_ndf(ndf, inner, error);
 
-	return quantity == STDFIT_PDF ? D_or_G1 * m.z : D_or_G1;
+	if (status == STDFIT_OK && ndf_is_tilted(*inner))
+		return api_fail(error, STATUS_UNSUPPORTED, "not of facets that lean on average");
+	return status;
 }
 
-static double table_value(const struct pwl *pwl, enum stdfit_ndf_quantity quantity, struct vec3 m)
-{
-	switch (quantity) {
-	case STDFIT_LAMBDA:
-		return pwl_lambda(pwl, m);
-	case STDFIT_G1:
-		return pwl_G1(pwl, m);
-	case STDFIT_PDF:
-		return pwl_D(pwl, m) * fmax(m.z, 0);
-	default:
-		return pwl_D(pwl, m);
-	}
-}
-
-static double class_value(const struct ndf *ndf, enum stdfit_ndf_quantity quantity, struct vec3 m)
+static double value_of(const struct ndf *ndf, enum stdfit_ndf_quantity quantity, struct vec3 m)
 {
 	switch (quantity) {
 	case STDFIT_LAMBDA:
@@ -161,14 +145,6 @@ static double class_value(const struct ndf *ndf, enum stdfit_ndf_quantity quanti
 	}
 }
 
-static double value_of(const struct stdfit_ndf *ndf, enum stdfit_ndf_quantity quantity, struct vec3 m)
-{
-	if (ndf->kind == API_NDF_ELLIPSOID)
-		return ellipsoid_value(&ndf->ellipsoid, quantity, m);
-	return ndf->kind == API_NDF_PIECEWISE ? table_value(&ndf->pwl, quantity, m)
-					      : class_value(&ndf->ndf, quantity, m);
-}
-
 enum stdfit_status stdfit_ndf_evaluate(const stdfit_ndf *ndf, enum stdfit_ndf_quantity quantity, size_t n,
 				       const double *directions, double *value, struct stdfit_error *error)
 {
@@ -179,12 +155,10 @@ enum stdfit_status stdfit_ndf_evaluate(const stdfit_ndf *ndf, enum stdfit_ndf_qu
 	if (q < STDFIT_D || q > STDFIT_PDF)
 		return api_fail(error, STATUS_DOMAIN, "expected a quantity in %d .. %d, found %ld", STDFIT_D,
 				STDFIT_PDF, q);
-	if (ndf->kind == API_NDF_ELLIPSOID && quantity == STDFIT_LAMBDA)
-		return api_fail(error, STATUS_UNSUPPORTED, "an ellipsoid has no Lambda");
 	const enum stdfit_status status = api_directions("direction", n, directions, error);
 
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
-		value[i] = value_of(ndf, quantity, api_vec(directions + 3 * i));
+		value[i] = value_of(&ndf->ndf, quantity, api_vec(directions + 3 * i));
 	return status;
 }
 
@@ -193,7 +167,7 @@ enum stdfit_status stdfit_ndf_G(const stdfit_ndf *ndf, const char *gaf, size_t n
 {
 	const struct ndf *inner = NULL;
 	enum gaf form = GAF_UNCORRELATED;
-	enum stdfit_status status = api_class_ndf(ndf, &inner, error);
+	enum stdfit_status status = api_ndf(ndf, &inner, error);
 
 	if (status == STDFIT_OK)
 		status = api_gaf(gaf, &form, error);
@@ -228,13 +202,9 @@ enum stdfit_status stdfit_ndf_sample(const stdfit_ndf *ndf, size_t n, const doub
 
 	if (!ndf)
 		return api_fail(error, STATUS_DOMAIN, "ndf is NULL");
-	if (ndf->kind == API_NDF_ELLIPSOID)
-		return api_fail(error, STATUS_UNSUPPORTED, "an ellipsoid has samples of visible normals only");
 	status = check_numbers(n, u, normals, error);
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
-		api_put(normals + 3 * i, ndf->kind == API_NDF_PIECEWISE
-						 ? pwl_sample(&ndf->pwl, u[2 * i], u[2 * i + 1])
-						 : ndf_sample(&ndf->ndf, u[2 * i], u[2 * i + 1]));
+		api_put(normals + 3 * i, ndf_sample(&ndf->ndf, u[2 * i], u[2 * i + 1]));
 	return status;
 }
 
@@ -242,10 +212,8 @@ enum stdfit_status stdfit_ndf_sample(const stdfit_ndf *ndf, size_t n, const doub
 static enum stdfit_status check_visible(const struct stdfit_ndf *ndf, const double wi[3], struct stdfit_error *error)
 {
 	const struct ndf *inner = NULL;
-	enum stdfit_status status = STDFIT_OK;
+	enum stdfit_status status = api_ndf(ndf, &inner, error);
 
-	if (!ndf || ndf->kind != API_NDF_ELLIPSOID)
-		status = api_class_ndf(ndf, &inner, error);
 	if (status == STDFIT_OK)
 		status = api_directions("wi", 1, wi, error);
 	if (status == STDFIT_OK && !(wi[2] > 0))
@@ -260,15 +228,12 @@ enum stdfit_status stdfit_ndf_sample_visible(const stdfit_ndf *ndf, const double
 
 	if (status != STDFIT_OK)
 		return status;
-	if (ndf->kind != API_NDF_ELLIPSOID && !vndf_supports(&ndf->ndf))
+	if (!vndf_supports(&ndf->ndf))
 		return api_fail(error, STATUS_UNSUPPORTED, "%s has no samples of visible normals",
 				ndf_name(ndf->ndf.class));
 	status = check_numbers(n, u, normals, error);
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
-		api_put(normals + 3 * i,
-			ndf->kind == API_NDF_ELLIPSOID
-				? ellipsoid_sample(&ndf->ellipsoid, api_vec(wi), u[2 * i], u[2 * i + 1])
-				: vndf_sample(&ndf->ndf, api_vec(wi), u[2 * i], u[2 * i + 1]));
+		api_put(normals + 3 * i, vndf_sample(&ndf->ndf, api_vec(wi), u[2 * i], u[2 * i + 1]));
 	return status;
 }
 
@@ -282,9 +247,7 @@ enum stdfit_status stdfit_ndf_pdf_visible(const stdfit_ndf *ndf, const double wi
 	if (status == STDFIT_OK && !pdf && n > 0)
 		status = api_fail(error, STATUS_DOMAIN, "pdf is NULL");
 	for (size_t i = 0; i < n && status == STDFIT_OK; i++)
-		pdf[i] = ndf->kind == API_NDF_ELLIPSOID
-				 ? ellipsoid_pdf(&ndf->ellipsoid, api_vec(wi), api_vec(normals + 3 * i))
-				 : vndf_pdf(&ndf->ndf, api_vec(wi), api_vec(normals + 3 * i));
+		pdf[i] = vndf_pdf(&ndf->ndf, api_vec(wi), api_vec(normals + 3 * i));
 	return status;
 }
 
@@ -294,7 +257,7 @@ enum stdfit_status stdfit_ndf_weight(const stdfit_ndf *ndf, const char *gaf, con
 {
 	const struct ndf *inner = NULL;
 	enum gaf form = GAF_UNCORRELATED;
-	enum stdfit_status status = api_class_ndf(ndf, &inner, error);
+	enum stdfit_status status = api_ndf(ndf, &inner, error);
 
 	if (status == STDFIT_OK)
 		status = check_visible(ndf, wi, error);
@@ -316,7 +279,7 @@ enum stdfit_status stdfit_ndf_P22(const stdfit_ndf *ndf, double p, double q, dou
 				  struct stdfit_error *error)
 {
 	const struct ndf *inner = NULL;
-	const enum stdfit_status status = api_class_ndf(ndf, &inner, error);
+	const enum stdfit_status status = api_ndf(ndf, &inner, error);
 
 	if (status != STDFIT_OK)
 		return status;
@@ -330,7 +293,7 @@ enum stdfit_status stdfit_ndf_P2(const stdfit_ndf *ndf, double phi, double q, do
 				 struct stdfit_error *error)
 {
 	const struct ndf *inner = NULL;
-	const enum stdfit_status status = api_class_ndf(ndf, &inner, error);
+	const enum stdfit_status status = api_ndf(ndf, &inner, error);
 
 	if (status != STDFIT_OK)
 		return status;
@@ -344,13 +307,13 @@ enum stdfit_status stdfit_ndf_moment(const stdfit_ndf *ndf, double phi, int orde
 				     struct stdfit_error *error)
 {
 	const struct ndf *inner = NULL;
-	const enum stdfit_status status = api_class_ndf(ndf, &inner, error);
+	const enum stdfit_status status = api_ndf(ndf, &inner, error);
 
 	if (status != STDFIT_OK)
 		return status;
 	if (!moment || !isfinite(phi) || order < 0 || order % 2)
 		return api_fail(error, STATUS_DOMAIN, "expected a finite phi, an even order, and room for the moment");
-	if (ndf->kind != API_NDF_CLASS)
+	if (inner->pwl)
 		return api_fail(error, STATUS_UNSUPPORTED, "a piecewise distribution has no moments here");
 	if (ndf_moment(inner, phi, order, moment) != STATUS_OK)
 		return api_fail(error, STATUS_DOMAIN, "the moment of order %d does not exist", order);
@@ -360,13 +323,13 @@ enum stdfit_status stdfit_ndf_moment(const stdfit_ndf *ndf, double phi, int orde
 enum stdfit_status stdfit_ndf_excess_kurtosis(const stdfit_ndf *ndf, double *kurtosis, struct stdfit_error *error)
 {
 	const struct ndf *inner = NULL;
-	const enum stdfit_status status = api_class_ndf(ndf, &inner, error);
+	const enum stdfit_status status = api_ndf(ndf, &inner, error);
 
 	if (status != STDFIT_OK)
 		return status;
 	if (!kurtosis)
 		return api_fail(error, STATUS_DOMAIN, "kurtosis is NULL");
-	if (ndf->kind != API_NDF_CLASS)
+	if (inner->pwl)
 		return api_fail(error, STATUS_UNSUPPORTED, "a piecewise distribution has no kurtosis here");
 	if (ndf_excess_kurtosis(inner, kurtosis) != STATUS_OK)
 		return api_fail(error, STATUS_DOMAIN, "%s of gamma %g has no kurtosis", ndf_name(inner->class),

@@ -21,7 +21,7 @@ static enum stdfit_status make_interface(const stdfit_ndf *ndf, const char *gaf,
 {
 	const struct ndf *inner = NULL;
 	enum gaf form = GAF_UNCORRELATED;
-	enum stdfit_status status = api_class_ndf(ndf, &inner, error);
+	enum stdfit_status status = api_level_ndf(ndf, &inner, error);
 
 	if (status == STDFIT_OK)
 		status = api_gaf(gaf, &form, error);
@@ -137,7 +137,7 @@ static enum stdfit_status make_walk(const struct stdfit_facets *facets, const st
 	const struct ndf *inner = NULL;
 	enum fresnel fresnel = FRESNEL_DIELECTRIC;
 	enum sampling visible;
-	enum stdfit_status status = api_class_ndf(ndf, &inner, error);
+	enum stdfit_status status = api_level_ndf(ndf, &inner, error);
 
 	if (status == STDFIT_OK && !facets)
 		status = api_fail(error, STATUS_DOMAIN, "facets is NULL");

@@ -62,8 +62,7 @@ static bool takes_ndf(enum command c)
 static void write_ndfs(FILE *file)
 {
 	for (int i = 0; ndf_at(i); i++)
-		fprintf(file, "%s ", ndf_name(ndf_at(i)));
-	fputs("ellipsoid", file);
+		fprintf(file, "%s%s", i ? " " : "", ndf_name(ndf_at(i)));
 }
 
 static void bash_command(FILE *file, enum command c)

@@ -2,6 +2,7 @@
 #include "fit/cli/distribution.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/nearest.h"
+#include "fit/cli/nodes.h"
 #include "fit/results/csv_number.h"
 #include "fit/results/result.h"
 #include "fit/search/free_form.h"
@@ -75,8 +76,8 @@ static bool is_node(const char *name, const void *context)
 	return i >= 0 && i < FREE_FORM_VALUES && !*end;
 }
 
-static enum status make_pl(const struct distribution_words *words, struct distribution *distribution,
-			   struct error *error)
+/* From D0 to D90. */
+static enum status pl_of_params(const struct distribution_words *words, struct pwl *pwl, struct error *error)
 {
 	double D[FREE_FORM_VALUES];
 	enum status status = check_params(words->params, is_node, NULL, error);
@@ -84,47 +85,129 @@ static enum status make_pl(const struct distribution_words *words, struct distri
 		char name[16];
 		snprintf(name, sizeof name, "D%d", i);
 		if (!given(words->params) || !result_param(words->params, name, &D[i]))
-			status = error_set(error, STATUS_DOMAIN, "pl needs the parameters D0 to D%d: %s is missing",
+			status = error_set(error, STATUS_DOMAIN,
+					   "pl needs --nodes, or the parameters D0 to D%d: %s is missing",
 					   FREE_FORM_VALUES - 1, name);
 	}
 	if (status != STATUS_OK)
 		return status;
-	distribution->pwl = calloc(1, sizeof *distribution->pwl);
-	status = distribution->pwl ? free_form_pwl(BINS_NODE, D, distribution->pwl) : STATUS_NO_MEMORY;
-	if (status == STATUS_OK)
-		ndf_from_pwl(&distribution->ndf, distribution->pwl);
+	status = free_form_pwl(BINS_NODE, D, pwl);
 	return status != STATUS_OK ? error_set(error, status, "pl takes no such values: %s", status_str(status))
 				   : STATUS_OK;
 }
 
+static enum status make_pl(const struct distribution_words *words, struct distribution *distribution,
+			   struct error *error)
+{
+	if (given(words->nodes) && given(words->params))
+		return error_set(error, STATUS_DOMAIN, "pl takes nodes or params, not both");
+	distribution->pwl = calloc(1, sizeof *distribution->pwl);
+	if (!distribution->pwl)
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	const enum status status = given(words->nodes) ? nodes_read(words->nodes, distribution->pwl, error)
+						       : pl_of_params(words, distribution->pwl, error);
+	if (status == STATUS_OK)
+		ndf_from_pwl(&distribution->ndf, distribution->pwl);
+	return status;
+}
+
 /* The ellipsoid */
 
-static const char *const ellipsoid_params[] = {"alpha_x", "alpha_y", "theta_x", "theta_y", "theta_z"};
+enum { ALPHA_X, ALPHA_Y, THETA_X, THETA_Y, THETA_Z, TILT_X, TILT_Y, MATRIX, OF_ELLIPSOID = MATRIX + 9 };
+
+static const char *const ellipsoid_params[OF_ELLIPSOID] = {[ALPHA_X] = "alpha_x",
+							   [ALPHA_Y] = "alpha_y",
+							   [THETA_X] = "theta_x",
+							   [THETA_Y] = "theta_y",
+							   [THETA_Z] = "theta_z",
+							   [TILT_X] = "tilt_x",
+							   [TILT_Y] = "tilt_y",
+							   "A11",
+							   "A12",
+							   "A13",
+							   "A21",
+							   "A22",
+							   "A23",
+							   "A31",
+							   "A32",
+							   "A33"};
 
 static bool is_of_ellipsoid(const char *name, const void *context)
 {
 	(void)context;
-	return names_find(ellipsoid_params, 5, name) >= 0;
+	return names_find(ellipsoid_params, OF_ELLIPSOID, name) >= 0;
+}
+
+/* How many of the values from one on are given. */
+static int count_given(const double *value, int n)
+{
+	int count = 0;
+	for (int i = 0; i < n; i++)
+		count += !isnan(value[i]);
+	return count;
+}
+
+static double or_zero(double x)
+{
+	return isnan(x) ? 0 : x;
+}
+
+static enum status ellipsoid_of_matrix(const double A[9], struct ndf *ndf)
+{
+	const double rows[3][3] = {{A[0], A[1], A[2]}, {A[3], A[4], A[5]}, {A[6], A[7], A[8]}};
+	struct ellipsoid ellipsoid;
+	const enum status status = ellipsoid_init(&ellipsoid, rows);
+	return status == STATUS_OK ? ndf_from_ellipsoid(ndf, &ellipsoid) : status;
+}
+
+static enum status ellipsoid_of_angles(const double value[], struct ndf *ndf)
+{
+	const double radians = M_PI / 180;
+	struct ellipsoid ellipsoid;
+	const enum status status =
+		ellipsoid_init_angles(&ellipsoid, value[ALPHA_X], value[ALPHA_Y], radians * or_zero(value[THETA_X]),
+				      radians * or_zero(value[THETA_Y]), radians * or_zero(value[THETA_Z]));
+	return status == STATUS_OK ? ndf_from_ellipsoid(ndf, &ellipsoid) : status;
+}
+
+static enum status ellipsoid_of_axes(const double value[], double angle, struct ndf *ndf)
+{
+	enum status status = ndf_init(ndf, ndf_find("ellipsoid"), value[ALPHA_X], value[ALPHA_Y], NAN);
+	if (status == STATUS_OK)
+		status = ndf_turn(ndf, or_zero(angle));
+	return status == STATUS_OK ? ndf_tilt(ndf, or_zero(value[TILT_X]), or_zero(value[TILT_Y])) : status;
 }
 
 /* sigma and sigma_y stand for alpha_x and alpha_y. */
-static enum status make_ellipsoid(const struct distribution_words *words, double sigma_x, double sigma_y,
-				  struct distribution *distribution, struct error *error)
+static enum status make_ellipsoid(const struct distribution_words *words, double sigma_x, double sigma_y, double angle,
+				  struct ndf *ndf, struct error *error)
 {
-	double value[5] = {sigma_x, sigma_y, 0, 0, 0};
-	const enum status status = check_params(words->params, is_of_ellipsoid, NULL, error);
+	double value[OF_ELLIPSOID];
+	enum status status = check_params(words->params, is_of_ellipsoid, NULL, error);
 	if (status != STATUS_OK)
 		return status;
-	for (int i = 0; i < 5 && given(words->params); i++)
-		(void)result_param(words->params, ellipsoid_params[i], &value[i]);
-	if (isnan(value[0]) || isnan(value[1]))
-		return error_set(error, STATUS_DOMAIN, "the ellipsoid needs alpha_x and alpha_y, or sigma");
-	distribution->is_ellipsoid = true;
-	const double radians = M_PI / 180;
-	return ellipsoid_init_angles(&distribution->ellipsoid, value[0], value[1], value[2] * radians,
-				     value[3] * radians, value[4] * radians) != STATUS_OK
-		       ? does_not_take("ellipsoid", error)
-		       : STATUS_OK;
+	for (int i = 0; i < OF_ELLIPSOID; i++) {
+		value[i] = i == ALPHA_X ? sigma_x : i == ALPHA_Y ? sigma_y : NAN;
+		if (given(words->params))
+			(void)result_param(words->params, ellipsoid_params[i], &value[i]);
+	}
+	if (isnan(value[ALPHA_Y]))
+		value[ALPHA_Y] = value[ALPHA_X];
+	const int elements = count_given(value + MATRIX, 9), angles = count_given(value + THETA_X, 3),
+		  others = count_given(value, MATRIX) + !isnan(angle);
+	if (elements && (elements < 9 || others))
+		return error_set(error, STATUS_DOMAIN,
+				 "the ellipsoid needs A11 to A33, all nine, and nothing beside them");
+	if (angles && (count_given(value + TILT_X, 2) || !isnan(angle)))
+		return error_set(error, STATUS_DOMAIN,
+				 "the ellipsoid takes theta_x, theta_y and theta_z, or an angle, tilt_x and tilt_y");
+	if (!elements && (isnan(value[ALPHA_X]) || isnan(value[ALPHA_Y])))
+		return error_set(error, STATUS_DOMAIN,
+				 "the ellipsoid needs alpha_x and alpha_y, or sigma, or a matrix");
+	status = elements ? ellipsoid_of_matrix(value + MATRIX, ndf)
+		 : angles ? ellipsoid_of_angles(value, ndf)
+			  : ellipsoid_of_axes(value, angle, ndf);
+	return status != STATUS_OK ? does_not_take("ellipsoid", error) : STATUS_OK;
 }
 
 /* The parametric classes */
@@ -203,31 +286,45 @@ static enum status set_lambda(const char *word, struct ndf *ndf, struct error *e
 	return error_set(error, STATUS_DOMAIN, "%s has no Lambda %s, or not at this gamma", ndf_name(ndf->class), word);
 }
 
+static enum status no_such_ndf(const char *name, struct error *error)
+{
+	char shown[TEXT_QUOTE_SIZE];
+	const int near = nearest_word(name ? name : "", distribution_name_at, NULL);
+	text_quote(name ? name : "", shown, sizeof shown);
+	return error_set(error, STATUS_DOMAIN, "there is no NDF '%s'%s%s%s", shown, near < 0 ? "" : ": did you mean ",
+			 near < 0 ? "" : distribution_name_at(NULL, near), near < 0 ? "" : "?");
+}
+
 static enum status make(const struct distribution_words *words, struct distribution *distribution, struct error *error)
 {
 	const struct ndf_class *class = ndf_find(words->name);
-	double sigma_x, sigma_y, gamma;
+	struct ndf *ndf = &distribution->ndf;
+	double sigma_x, sigma_y, gamma, angle;
 	enum status status = number("sigma", words->sigma, NAN, &sigma_x, error);
 	if (status == STATUS_OK)
 		status = number("sigma_y", words->sigma_y, sigma_x, &sigma_y, error);
 	if (status == STATUS_OK)
 		status = number("gamma", words->gamma, NAN, &gamma, error);
+	if (status == STATUS_OK)
+		status = number("angle", words->angle, NAN, &angle, error);
 	if (status != STATUS_OK)
 		return status;
-	distribution->name = class ? ndf_name(class) : "ellipsoid";
-	if (words->name && !strcmp(words->name, "ellipsoid"))
-		return make_ellipsoid(words, sigma_x, sigma_y, distribution, error);
-	if (!class) {
-		char shown[TEXT_QUOTE_SIZE];
-		const int near = nearest_word(words->name ? words->name : "", distribution_name_at, NULL);
-		text_quote(words->name ? words->name : "", shown, sizeof shown);
-		return error_set(error, STATUS_DOMAIN, "there is no NDF '%s'%s%s%s", shown,
-				 near < 0 ? "" : ": did you mean ", near < 0 ? "" : distribution_name_at(NULL, near),
-				 near < 0 ? "" : "?");
-	}
-	status = ndf_is_tabulated(class) ? make_pl(words, distribution, error)
-					 : make_class(words, class, sigma_x, sigma_y, gamma, &distribution->ndf, error);
-	return status != STATUS_OK ? status : set_lambda(words->lambda, &distribution->ndf, error);
+	if (!class)
+		return no_such_ndf(words->name, error);
+	distribution->name = ndf_name(class);
+	if (given(words->nodes) && !ndf_is_tabulated(class))
+		return error_set(error, STATUS_DOMAIN, "nodes are for pl, not for %s", ndf_name(class));
+	if (ndf_has_tilt(class) && !isnan(gamma))
+		status = error_set(error, STATUS_DOMAIN, "%s has no gamma", ndf_name(class));
+	else if (ndf_has_tilt(class))
+		status = make_ellipsoid(words, sigma_x, sigma_y, angle, ndf, error);
+	else if (ndf_is_tabulated(class))
+		status = make_pl(words, distribution, error);
+	else
+		status = make_class(words, class, sigma_x, sigma_y, gamma, ndf, error);
+	if (status == STATUS_OK && !isnan(angle) && !ndf_has_tilt(class) && ndf_turn(ndf, angle) != STATUS_OK)
+		status = error_set(error, STATUS_DOMAIN, "bad angle %g: expected a finite one", angle);
+	return status != STATUS_OK ? status : set_lambda(words->lambda, ndf, error);
 }
 
 const char *distribution_name_at(const void *data, int i)
@@ -256,65 +353,14 @@ void distribution_free(struct distribution *distribution)
 
 /* Values */
 
-double distribution_D(const struct distribution *distribution, struct vec3 m)
-{
-	return distribution->is_ellipsoid ? ellipsoid_D(&distribution->ellipsoid, m) : ndf_D(&distribution->ndf, m);
-}
-
-double distribution_P22(const struct distribution *distribution, double p, double q)
-{
-	if (!distribution->is_ellipsoid)
-		return ndf_P22(&distribution->ndf, p, q);
-	const struct vec3 m = vec3_unit((struct vec3){-p, -q, 1});
-	return ellipsoid_D(&distribution->ellipsoid, m) * (m.z * m.z) * (m.z * m.z);
-}
-
-double distribution_P2(const struct distribution *distribution, double phi, double q)
-{
-	return distribution->is_ellipsoid ? NAN : ndf_P2(&distribution->ndf, phi, q);
-}
-
-double distribution_lambda(const struct distribution *distribution, struct vec3 w)
-{
-	return distribution->is_ellipsoid ? 1 / ellipsoid_smith(&distribution->ellipsoid, w) - 1
-					  : ndf_lambda(&distribution->ndf, w);
-}
-
-double distribution_G1(const struct distribution *distribution, struct vec3 w)
-{
-	return distribution->is_ellipsoid ? ellipsoid_G1(&distribution->ellipsoid, w) : ndf_G1(&distribution->ndf, w);
-}
-
-double distribution_visible_pdf(const struct distribution *distribution, struct vec3 wi, struct vec3 m)
-{
-	return distribution->is_ellipsoid ? ellipsoid_pdf(&distribution->ellipsoid, wi, m)
-					  : vndf_pdf(&distribution->ndf, wi, m);
-}
-
-double distribution_weight(const struct distribution *distribution, enum gaf gaf, struct vec3 wi, struct vec3 m,
-			   double pdf)
-{
-	if (!distribution->is_ellipsoid)
-		return vndf_weight(&distribution->ndf, gaf, wi, m, pdf);
-	const double cos_d = vec3_dot(wi, m);
-	const struct vec3 wo = vec3_sub(vec3_scale(m, 2 * cos_d), wi);
-	if (!(cos_d > 0 && wo.z > 0))
-		return 0;
-	return ellipsoid_G1(&distribution->ellipsoid, wi) * ellipsoid_G1(&distribution->ellipsoid, wo) *
-	       ellipsoid_D(&distribution->ellipsoid, m) / pdf * cos_d / wi.z;
-}
-
 struct distribution_cdf distribution_cdf(const struct distribution *distribution, struct vec3 wi, double theta,
 					 double phi)
 {
 	const double radians = M_PI / 180;
-	struct distribution_cdf cdf = {NAN, NAN, NAN, NAN, NAN};
-	if (distribution->is_ellipsoid)
-		return cdf;
 	const struct ndf *ndf = &distribution->ndf;
-	cdf.phi = ndf_cdf_phi(ndf, phi * radians);
-	cdf.theta = ndf_cdf_theta(ndf, theta * radians, phi * radians);
-	cdf.joint = ndf_cdf(ndf, theta * radians, phi * radians);
+	struct distribution_cdf cdf = {.phi = ndf_cdf_phi(ndf, phi * radians),
+				       .theta = ndf_cdf_theta(ndf, theta * radians, phi * radians),
+				       .joint = ndf_cdf(ndf, theta * radians, phi * radians)};
 	vndf_cdf(ndf, wi, vec3_from_spherical_deg(theta, phi), &cdf.along, &cdf.across);
 	return cdf;
 }
@@ -322,20 +368,14 @@ struct distribution_cdf distribution_cdf(const struct distribution *distribution
 double distribution_moment(const struct distribution *distribution, double phi, int order)
 {
 	double moment = NAN;
-	if (distribution->is_ellipsoid || ndf_moment(&distribution->ndf, phi, order, &moment) != STATUS_OK)
-		return NAN;
-	return moment;
+	return ndf_moment(&distribution->ndf, phi, order, &moment) == STATUS_OK ? moment : NAN;
 }
 
 double distribution_kurtosis(const struct distribution *distribution)
 {
 	double kurtosis = NAN;
-	if (distribution->is_ellipsoid || ndf_excess_kurtosis(&distribution->ndf, &kurtosis) != STATUS_OK)
-		return NAN;
-	return kurtosis;
+	return ndf_excess_kurtosis(&distribution->ndf, &kurtosis) == STATUS_OK ? kurtosis : NAN;
 }
-
-/* Samples */
 
 struct vec3 distribution_direction(double theta_i, double phi_i)
 {
@@ -343,27 +383,4 @@ struct vec3 distribution_direction(double theta_i, double phi_i)
 	if (wi.z < 1e-100)
 		wi.z = 1e-100;
 	return wi;
-}
-
-enum status distribution_sampler_init(struct distribution_sampler *sampler, const struct distribution *distribution,
-				      enum sampling sampling)
-{
-	sampler->distribution = distribution;
-	if (distribution->is_ellipsoid)
-		return sampling == SAMPLING_VISIBLE ? STATUS_OK : STATUS_UNSUPPORTED;
-	return sampler_init(&sampler->sampler, &distribution->ndf, sampling);
-}
-
-struct vec3 distribution_sample(const struct distribution_sampler *sampler, struct vec3 wi, double u1, double u2)
-{
-	if (sampler->distribution->is_ellipsoid)
-		return ellipsoid_sample(&sampler->distribution->ellipsoid, wi, u1, u2);
-	return sampler_sample(&sampler->sampler, wi, u1, u2);
-}
-
-double distribution_pdf(const struct distribution_sampler *sampler, struct vec3 wi, struct vec3 m)
-{
-	if (sampler->distribution->is_ellipsoid)
-		return ellipsoid_pdf(&sampler->distribution->ellipsoid, wi, m);
-	return sampler_pdf(&sampler->sampler, wi, m);
 }

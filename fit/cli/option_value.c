@@ -89,8 +89,12 @@ const struct option_spec option_specs[] = {
 	{"weight", 0, KIND_WEIGHT, EXPORT, NOT_RECORDED, "NAME",
 	 "how an entry counts in the error of a fit, also of one in the place of a given model or row",
 	 AT(fit.criterion.weight), 0, 0},
-	{"bins", 0, KIND_BINS, SEARCHES | MODEL | SOURCES | INFO | CONVERT, RECORDED, "NAME",
+	{"bins", 0, KIND_BINS, COMPARE | PLOT | BENCH | MODEL | SOURCES | INFO | CONVERT, NOT_RECORDED, "NAME",
 	 "where the entries of a table stand", AT(fit.criterion.bins), 0, 0},
+	{"bins", 0, KIND_BINS_OR_BOTH, FIT | REPORT, RECORDED, "NAME",
+	 "where the entries of a table stand; both: at the nodes, and how far a fit at the centres moves each "
+	 "parameter",
+	 AT(fit.criterion.bins), 0, 0},
 	{"quantity", 0, KIND_QUANTITY, SEARCHES | EVAL | SOURCES | INFO | CONVERT, RECORDED_GIVEN, "NAME",
 	 "what the numbers of the file are, whatever it says: the BRDF (1/sr), times cos theta_o, or times pi",
 	 AT(quantity), 0, 0},
@@ -154,6 +158,10 @@ const struct option_spec option_specs[] = {
 	{"seed", 0, KIND_SEED, SEARCHES, RECORDED, "N", "seed of the random shapes", AT(fit.seed), 0, 0},
 	{"within", 0, KIND_PERCENT, FIT, RECORDED_WITHIN, "P%",
 	 "per material only the simplest model whose error is within P% of the best", AT(within), 0, 1000},
+	{"intervals", 0, KIND_PERCENT, FIT | REPORT, RECORDED_GIVEN, "P%",
+	 "how certain the shape is: between which values sigma, gamma, n ... each may lie, the others refitted, while "
+	 "the error stays within P% of the best; 1 is a good choice",
+	 AT(intervals), 0.01, 1000},
 	{"sigma", 0, KIND_SIGMA, MODEL, NOT_RECORDED, "S|SX,SY", "roughness, along both axes if two", AT(fit.sigma),
 	 FIT_SIGMA_MIN, FIT_SIGMA_MAX},
 	{"angle", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "DEG", "azimuth of the axis of SX; 0 if not given",
@@ -206,10 +214,12 @@ const struct option_spec option_specs[] = {
 	 AT(sigma_words), 0, 0},
 	{"gamma", 0, KIND_WORD, NDF | SAMPLE, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann)",
 	 AT(gamma_words), 0, 0},
-	{"params", 0, KIND_WORD, NDF | SAMPLE, NOT_RECORDED, "P",
-	 "other parameters, name=value;...: x of t-family, B and C of low, D0 to D90 of pl, alpha_x, alpha_y, theta_x, "
-	 "theta_y, theta_z (degrees) of the ellipsoid",
+	{"params", 0, KIND_WORD, NDF | SAMPLE | MODEL | SOURCES, NOT_RECORDED, "P",
+	 "other parameters, name=value;...: x of t-family, B and C of low, D0 to D90 of pl; of the ellipsoid tilt_x "
+	 "and tilt_y, or theta_x, theta_y, theta_z (degrees), or its matrix A11 to A33",
 	 AT(params), 0, 0},
+	{"nodes", 0, KIND_TEXT, NDF | SAMPLE | MODEL | SOURCES, NOT_RECORDED, "FILE.csv",
+	 "the nodes of pl: columns theta, degrees from 0 to 90, and D, or Dx and Dy along x and y", AT(nodes), 0, 0},
 	{"theta", 0, KIND_WORD, NDF, NOT_RECORDED, "LIST", "polar angles, degrees: START:END:STEP or A,B,...",
 	 AT(theta), 0, 0},
 	{"phi", 0, KIND_WORD, NDF, NOT_RECORDED, "LIST", "azimuths, degrees, likewise; 0 if not given", AT(phi), 0, 0},
@@ -259,6 +269,7 @@ _Static_assert(sizeof option_specs / sizeof *option_specs <= OPTIONS_MAX,
 	       "struct options.given has an entry per option");
 
 static const char *const diffuse_name[] = {"lambert", "burley"};
+static const char both_bins[] = "both";
 
 const char *option_choice(enum option_kind kind, int i)
 {
@@ -280,6 +291,8 @@ const char *option_choice(enum option_kind kind, int i)
 	case KIND_WEIGHT:
 	case KIND_WEIGHTS:
 		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
+	case KIND_BINS_OR_BOTH:
+		return i == BINS_COUNT ? both_bins : option_choice(KIND_BINS, i);
 	case KIND_BINS:
 		return i < BINS_COUNT ? bins_name((enum bins)i) : NULL;
 	case KIND_QUANTITY:
@@ -545,6 +558,15 @@ static enum status parse_weights(const char *text, struct options *options, stru
 	return STATUS_OK;
 }
 
+static enum status parse_bins(const char *text, struct options *options, struct error *error)
+{
+	options->both_bins = !strcmp(text, both_bins);
+	options->fit.criterion.bins = BINS_NODE;
+	if (options->both_bins || bins_find(text, &options->fit.criterion.bins) == STATUS_OK)
+		return STATUS_OK;
+	return expected_choice(KIND_BINS_OR_BOTH, error);
+}
+
 static enum status parse_algorithms(const char *text, struct options *options, struct error *error)
 {
 	char name[64];
@@ -598,6 +620,8 @@ enum status option_parse(struct options *options, const struct option_spec *spec
 		return parse_ndfs(text, &options->fit, error);
 	case KIND_WEIGHTS:
 		return parse_weights(text, options, error);
+	case KIND_BINS_OR_BOTH:
+		return parse_bins(text, options, error);
 	case KIND_ALGORITHMS:
 		return parse_algorithms(text, options, error);
 	default:
@@ -683,6 +707,9 @@ void option_write(FILE *file, const struct options *options, const struct option
 		break;
 	case KIND_WEIGHTS:
 		write_weights(file, options);
+		break;
+	case KIND_BINS_OR_BOTH:
+		fputs(options->both_bins ? both_bins : bins_name(options->fit.criterion.bins), file);
 		break;
 	case KIND_BINS:
 		fputs(bins_name(*(const enum bins *)value), file);

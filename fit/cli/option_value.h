@@ -31,6 +31,7 @@ enum option_kind {
 	KIND_WEIGHT,
 	KIND_WEIGHTS, /* several of them, separated by commas: weight and n_weights; the first is fit.criterion.weight */
 	KIND_BINS,
+	KIND_BINS_OR_BOTH, /* the same, or "both": node, and both_bins is set */
 	KIND_QUANTITY,
 	KIND_GAMUT,
 	KIND_FORMAT,

@@ -73,7 +73,7 @@ static const struct command_text commands[COMMAND_COUNT] = {
 		 "slope, P2 of the slope tan(theta) along phi and its moments, Lambda and G1 of the direction there,\n"
 		 "the shares of normals below theta and in (0, phi); with --theta-i the density of the normal among\n"
 		 "those visible, the weight of such a sample, and the CDFs of its slopes along and across that\n"
-		 "direction. NAME is an NDF, ellipsoid, or - for rows of standard input: a CSV with the columns ndf,\n"
+		 "direction. NAME is an NDF, or - for rows of standard input: a CSV with the columns ndf,\n"
 		 "sigma, sigma_y, gamma, params, lambda, theta, phi, theta_i, phi_i, as far as needed. With --from,\n"
 		 "the NDFs of a result table.\n"},
 	[COMMAND_SAMPLE] =
@@ -294,6 +294,7 @@ struct options options_default(enum command command)
 		.fit = fit_options_default(),
 		.command = command,
 		.within = NAN,
+		.intervals = NAN,
 		.n_phi_d = 180,
 		.theta_i = NAN,
 		.count = 1000,
@@ -516,6 +517,8 @@ int options_check_fit(const struct options *options)
 	for (size_t i = 0; i < sizeof shape / sizeof *shape; i++)
 		if (!fit->specular && options_given(options, shape[i]))
 			return options_usage(options->command, "--%s means nothing with --no-specular", shape[i]);
+	if (!fit->specular && !isnan(options->intervals))
+		return options_usage(options->command, "--intervals means nothing with --no-specular");
 	if (!fit->anisotropic && (!isnan(fit->sigma_y) || !isnan(fit->angle)))
 		return options_usage(options->command, "--%s needs --anisotropic",
 				     isnan(fit->angle) ? "sigma SX,SY" : "angle");
@@ -672,8 +675,8 @@ bool options_index_per_channel(const struct options *options)
 /* An option for a term that the model does not have. */
 static int check_model(const struct options *options)
 {
-	static const char *const specular[] = {"sigma",   "angle", "gamma", "ior", "k",   "ndf",    "gaf",
-					       "fresnel", "f0",    "f82",   "f90", "ks2", "sigma2", "gamma2"};
+	static const char *const specular[] = {"sigma",  "angle", "gamma", "ior", "k",   "ndf", "gaf",    "fresnel",
+					       "params", "nodes", "f0",    "f82", "f90", "ks2", "sigma2", "gamma2"};
 	const enum command command = options->command;
 	const struct ndf_class *ndf = options->fit.ndf[0];
 	if (options->fit.n_ndf != 1)
@@ -683,9 +686,15 @@ static int check_model(const struct options *options)
 	for (size_t i = 0; i < sizeof specular / sizeof *specular; i++)
 		if (!options_given(options, "ks") && options_given(options, specular[i]))
 			return options_usage(command, "--%s means nothing without --ks", specular[i]);
-	if (options_given(options, "ks") && !options_given(options, "sigma"))
+	const bool described = options_given(options, "params") || options_given(options, "nodes");
+	const bool plain = options_given(options, "ks") && !described && !ndf_is_tabulated(ndf);
+	for (size_t i = 0; i < 2 && ndf_is_tabulated(ndf); i++)
+		if (options_given(options, i ? "gamma" : "sigma"))
+			return options_usage(command, "--%s means nothing for %s", i ? "gamma" : "sigma",
+					     ndf_name(ndf));
+	if (plain && !options_given(options, "sigma"))
 		return options_usage(command, "--ks needs --sigma");
-	if (options_given(options, "ks") && ndf_has_gamma(ndf) != options_given(options, "gamma"))
+	if (plain && ndf_has_gamma(ndf) != options_given(options, "gamma"))
 		return options_usage(command, "--ndf %s %s", ndf_name(ndf),
 				     ndf_has_gamma(ndf) ? "needs --gamma" : "has no --gamma");
 	if (!fresnel_has_ior(options->fit.fresnel) && options_given(options, "ior"))
@@ -695,17 +704,54 @@ static int check_model(const struct options *options)
 		return low_index(options);
 	if (options->fit.fresnel != FRESNEL_CONDUCTOR && options_index_per_channel(options))
 		return options_usage(command, "--ior R,G,B needs --fresnel conductor");
-	if (isnan(options->fit.sigma_y) && options_given(options, "angle"))
+	if (isnan(options->fit.sigma_y) && !described && options_given(options, "angle"))
 		return options_usage(command, "--angle needs --sigma SX,SY");
 	if (options->fit.fresnel != FRESNEL_CONDUCTOR && options_given(options, "k"))
 		return options_usage(command, "--k means nothing without --fresnel conductor");
 	return check_terms(options);
 }
 
-int options_model(const struct options *options, struct cook_torrance *model)
+/* The NDF of the model. */
+static enum status make_ndf(const struct options *options, struct distribution *distribution, struct error *error)
 {
 	const struct fit_options *fit = &options->fit;
+	char sigma[CSV_NUMBER_SIZE], sigma_y[CSV_NUMBER_SIZE], angle[CSV_NUMBER_SIZE], gamma[CSV_NUMBER_SIZE];
+	const bool specular = options_given(options, "ks");
+	const struct distribution_words words = {
+		.name = ndf_name(fit->ndf[0]),
+		.sigma = specular ? csv_number(sigma, fit->sigma) : "1",
+		.sigma_y = specular ? csv_number(sigma_y, fit->sigma_y) : "",
+		.angle = csv_number(angle, fit->angle),
+		.gamma = specular ? csv_number(gamma, fit->gamma) : "2",
+		.params = options->params,
+		.nodes = options->nodes,
+	};
+	enum status status = distribution_make(&words, distribution, error);
+	if (status != STATUS_OK)
+		return status;
+	if (fit->lambda != LAMBDA_EXACT)
+		status = ndf_set_lambda_form(&distribution->ndf, fit->lambda);
+	if (status == STATUS_OK || status == STATUS_UNSUPPORTED)
+		return STATUS_OK;
+	distribution_free(distribution);
+	return error_set(error, status, "--ndf %s does not allow these parameters", words.name);
+}
+
+static int make_second(const struct options *options, struct ndf *second)
+{
+	const struct ndf_class *class = options->fit.ndf[0];
+	const struct shape shape = {.sigma = options->sigma2, .gamma = isnan(options->gamma2) ? 2 : options->gamma2};
+	if (!options_given(options, "ks2") || shape_ndf(&shape, class, options->fit.lambda, second) == STATUS_OK)
+		return -1;
+	return options_usage(options->command, "--ndf %s does not allow these parameters", ndf_name(class));
+}
+
+int options_model(const struct options *options, struct cook_torrance *model, struct distribution *distribution)
+{
+	const struct fit_options *fit = &options->fit;
+	struct error why;
 	const int wrong = check_model(options);
+	*distribution = (struct distribution){0};
 	if (wrong >= 0)
 		return wrong;
 	*model = (struct cook_torrance){.gaf = fit->criterion.gaf,
@@ -720,26 +766,24 @@ int options_model(const struct options *options, struct cook_torrance *model)
 	}
 	memcpy(model->kd, options->kd, sizeof model->kd);
 	memcpy(model->ks, options->ks, sizeof model->ks);
-	const double sigma = isnan(fit->sigma) ? 1 : fit->sigma, gamma = isnan(fit->gamma) ? 2 : fit->gamma;
-	struct shape shape = {.sigma = sigma, .gamma = gamma};
-	if (!isnan(fit->sigma_y)) {
-		shape.sigma = sqrt(sigma * fit->sigma_y);
-		shape.stretch = log(sigma / fit->sigma_y);
-		shape.angle = isnan(fit->angle) ? 0 : fit->angle;
-	}
 	for (int c = 0; c < MERL_CHANNELS; c++)
 		for (int i = 0; i < F82_PARTS; i++)
 			model->reflectance[c][i] = options->f82[i][c];
 	memcpy(model->kg, options->kg, sizeof model->kg);
 	model->grazing = isnan(fit->grazing_exponent) ? 5 : fit->grazing_exponent;
 	memcpy(model->ks_second, options->ks2, sizeof model->ks_second);
-	const struct shape second = {.sigma = options->sigma2, .gamma = isnan(options->gamma2) ? 2 : options->gamma2};
-	if (shape_ndf(&shape, fit->ndf[0], fit->lambda, &model->ndf) != STATUS_OK ||
-	    (options_given(options, "ks2") &&
-	     shape_ndf(&second, fit->ndf[0], fit->lambda, &model->second) != STATUS_OK))
-		return options_usage(options->command, "--ndf %s does not allow these parameters",
-				     ndf_name(fit->ndf[0]));
-	return -1;
+	const enum status status = make_ndf(options, distribution, &why);
+	if (status == STATUS_DOMAIN)
+		return options_usage(options->command, "%s", why.text);
+	if (status != STATUS_OK) {
+		report_error("%s", why.text);
+		return EXIT_FAILED;
+	}
+	model->ndf = distribution->ndf;
+	const int bad_second = make_second(options, &model->second);
+	if (bad_second >= 0)
+		distribution_free(distribution);
+	return bad_second;
 }
 
 enum show options_show(const struct options *options)

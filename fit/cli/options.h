@@ -21,6 +21,7 @@ struct options {
 		weight[WEIGHT_COUNT]; /* of `fit`, which fits under each of them; fit.criterion.weight is the first */
 	int n_weights;                /* 0: fit.criterion.weight is the only one */
 	enum command command;
+	bool both_bins;         /* what is fitted with one is fitted with the other, too, and the difference told */
 	enum quantity quantity; /* of a file that may have another than it says */
 	enum gamut gamut;
 	const char *output;      /* NULL: standard output */
@@ -28,7 +29,8 @@ struct options {
 	const char *trace;       /* a CSV of the course of each search; NULL: none */
 	struct shard shard;      /* .n = 0: all files */
 	bool json, quiet, resume, recursive, readable;
-	double within; /* percent; NaN: every NDF as it is */
+	double within;    /* percent; NaN: every NDF as it is */
+	double intervals; /* percent; NaN: none are sought */
 	/* A model, for eval and synth; its sigma, gamma and ior are those of `fit`. */
 	double kd[3], ks[3], ior[3], k[3]; /* ior: where given, see KIND_INDEX */
 	double f82[F82_PARTS][3], kg[3], ks2[3], sigma2, gamma2;
@@ -37,10 +39,11 @@ struct options {
 	enum export_format format;
 	double accuracy, file_size; /* percent, bytes */
 	/* A distribution, for ndf and sample, in words: distribution.h. */
-	const char *sigma_words, *gamma_words, *params;
-	const char *theta, *phi; /* lists of angles: angles.h */
-	double theta_i, phi_i;   /* degrees; theta_i NaN: not given */
-	enum sampling sampling;  /* and for render */
+	const char *sigma_words, *gamma_words;
+	const char *params, *nodes; /* and for a model */
+	const char *theta, *phi;    /* lists of angles: angles.h */
+	double theta_i, phi_i;      /* degrees; theta_i NaN: not given */
+	enum sampling sampling;     /* and for render */
 	int count;
 	int n_phi_d;
 	double noise;
@@ -83,9 +86,11 @@ struct read_options options_reading(const struct options *options, int threads);
  * included. NULL when out of memory. */
 char *options_text(const struct options *options, enum weight weight);
 
-/* options_model - the model that the options of eval and synth describe, into *model.
- * Returns -1, or EXIT_USAGE when they describe none (reported on standard error). */
-MUST_CHECK int options_model(const struct options *options, struct cook_torrance *model);
+/* options_model - the model that the options describe, into *model, whose NDF is that of *distribution, to be freed by
+ * distribution_free().
+ * Returns -1, or the exit code when they describe none (reported on standard error); *distribution holds nothing then. */
+MUST_CHECK int options_model(const struct options *options, struct cook_torrance *model,
+			     struct distribution *distribution);
 
 /* options_check_fit - whether the options of a fit go together. Returns -1, or EXIT_USAGE with a message on standard error. */
 MUST_CHECK int options_check_fit(const struct options *options);

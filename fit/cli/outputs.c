@@ -58,6 +58,7 @@ static int count_inputs(const struct options *options)
 static bool is_read(const struct options *options, char *const *path, size_t n, const char *name)
 {
 	bool read = options->from && files_same(options->from, name);
+	read |= options->nodes && files_same(options->nodes, name);
 	/* A light has a built-in name or is a file. */
 	read |= options->environment && !access(options->environment, F_OK) && files_same(options->environment, name);
 	for (int i = 0; i < count_inputs(options) && !read; i++)

@@ -2,6 +2,7 @@
 #include "fit/cli/report.h"
 #include "data_readers/text_quote.h"
 #include "fit/cli/terminal.h"
+#include "fit/results/interval_text.h"
 #include "fit/results/result.h"
 
 #include <math.h>
@@ -255,11 +256,63 @@ static void print_status(FILE *file, const char *status, bool narrow)
 static void print_axes(FILE *file, char *const *row, bool narrow)
 {
 	const double x = result_number(row, RESULT_SIGMA_X), y = result_number(row, RESULT_SIGMA_Y);
-	char text[SHOWN_SIZE];
+	double tilt_x, tilt_y;
+	char text[SHOWN_SIZE], tilt[SHOWN_SIZE] = "";
 	if (isnan(x) || isnan(y))
 		return;
-	snprintf(text, sizeof text, "(sigma_x %.5g, sigma_y %.5g, angle %.4g)", x, y, result_number(row, RESULT_ANGLE));
+	if (result_param(row[RESULT_PARAMS], "tilt_x", &tilt_x) && result_param(row[RESULT_PARAMS], "tilt_y", &tilt_y))
+		snprintf(tilt, sizeof tilt, ", tilt %.4g,%.4g", tilt_x, tilt_y);
+	snprintf(text, sizeof text, "(sigma_x %.5g, sigma_y %.5g, angle %.4g%.40s)", x, y,
+		 result_number(row, RESULT_ANGLE), tilt);
 	print_remark(file, text, narrow);
+}
+
+/* Between which values the parameters may lie, below the row. */
+static void print_intervals(FILE *file, char *const *row)
+{
+	static const char *const name[INTERVAL_PARAMETERS] = {"sigma",    "gamma",  "n",     "k",
+							      "exponent", "sigma2", "gamma2"};
+	char text[INTERVAL_PARAMETERS * (INTERVAL_TEXT_SIZE + SHOWN_SIZE)] = "", one[INTERVAL_TEXT_SIZE];
+	int used = 0;
+	for (enum interval_parameter p = 0; p < INTERVAL_PARAMETERS; p++)
+		if (*interval_text(one, row, p))
+			used += snprintf(text + used, sizeof text - (size_t)used, "%s%s %s", used ? ", " : "", name[p],
+					 one);
+	if (used)
+		print_remark(file, text, true);
+}
+
+/* And how far they move when the entries are taken to stand elsewhere. */
+static void print_other_bins(FILE *file, char *const *row)
+{
+	static const char lead[] = "at bin centres ";
+	char text[sizeof lead + OTHER_BINS_SIZE], moves[OTHER_BINS_SIZE];
+	if (!*other_bins_text(moves, row))
+		return;
+	snprintf(text, sizeof text, "%s%s", lead, moves);
+	print_remark(file, text, true);
+}
+
+/* What a model of more terms than two has beside the columns. */
+static void print_terms(FILE *file, char *const *row, bool narrow)
+{
+	char a[SHOWN_SIZE], b[SHOWN_SIZE], c[SHOWN_SIZE], text[3 * SHOWN_SIZE + 32];
+
+	if (*row[RESULT_F0_R]) {
+		snprintf(text, sizeof text, "(F0 %s, F82 %s, F90 %s)", rgb_text(a, row, RESULT_F0_R),
+			 rgb_text(b, row, RESULT_F82_R), rgb_text(c, row, RESULT_F90_R));
+		print_remark(file, text, narrow);
+	}
+	if (*row[RESULT_KG_R]) {
+		snprintf(text, sizeof text, "(kg %s, exponent %.4g)", rgb_text(a, row, RESULT_KG_R),
+			 result_number(row, RESULT_EXPONENT));
+		print_remark(file, text, narrow);
+	}
+	if (*row[RESULT_SIGMA2]) {
+		snprintf(text, sizeof text, "(ks2 %s, sigma2 %.5g, gamma2 %.5g)", rgb_text(a, row, RESULT_KS2_R),
+			 result_number(row, RESULT_SIGMA2), result_number(row, RESULT_GAMMA2));
+		print_remark(file, text, narrow);
+	}
 }
 
 /* The columns of a table of fits; of its names, at least: a wider terminal shares the rest between them and remarks. */
@@ -316,9 +369,12 @@ static void print_fit(FILE *file, char *const *row, bool narrow, bool weights)
 	if (*text)
 		print_remark(file, bound, narrow);
 	print_axes(file, row, narrow);
+	print_terms(file, row, narrow);
 	print_status(file, row[RESULT_STATUS], narrow);
 	if (!strcmp(row[RESULT_ENERGY], "gain"))
 		print_remark(file, "(sends back more light than it gets)", narrow);
+	print_intervals(file, row);
+	print_other_bins(file, row);
 	fputc('\n', file);
 }
 

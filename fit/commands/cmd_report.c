@@ -68,12 +68,13 @@ static enum status begin(struct report *r, struct page *page, FILE *file, const 
 	struct page_picture errors = {
 		.type = "image/svg+xml",
 		.plot = true,
-		.alt = "Error of each fit, one curve an NDF, materials sorted; the numbers are in the table below.",
+		.alt = "Error of each fit, a point a material and NDF, materials sorted; the numbers are in the table "
+		       "below.",
 		.caption = "Errors of all materials, sorted.",
 	};
 	struct error why;
 	const enum status status = plot_errors(r->scratch.path, materials, &why);
-	const bool wanted = status != STATUS_NO_DATA && materials->n > 1;
+	const bool wanted = status != STATUS_NO_DATA && materials->n_distinct > 1;
 	if (status != STATUS_OK && status != STATUS_NO_DATA)
 		report_failure(r, &why);
 	if (status == STATUS_OK && wanted && draw(r, name, 1, &why)) {

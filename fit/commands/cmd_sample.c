@@ -2,6 +2,8 @@
 /* stdfit sample - random normals of a distribution, and the directions into which they reflect. */
 #include "fit/commands/commands.h"
 #include "fit/sources/distribution_source.h"
+#include "src/sampling.h"
+#include "src/vndf.h"
 
 #include <gsl/gsl_rng.h>
 
@@ -25,12 +27,11 @@ static const struct csv_column columns[SAMPLE_COLUMNS] = {
 };
 
 /* Seen from somewhere, or not: wi.z = NaN. */
-static enum status add_sample(const struct described *item, const struct distribution_sampler *sampler, struct vec3 wi,
-			      double u1, double u2, struct csv_table *output)
+static enum status add_sample(const struct described *item, const struct sampler *sampler, struct vec3 wi, double u1,
+			      double u2, struct csv_table *output)
 {
-	const struct distribution *distribution = &item->distribution;
-	const struct vec3 m = distribution_sample(sampler, wi, u1, u2);
-	const double pdf = distribution_pdf(sampler, wi, m);
+	const struct vec3 m = sampler_sample(sampler, wi, u1, u2);
+	const double pdf = sampler_pdf(sampler, wi, m);
 	const double cos_d = vec3_dot(wi, m);
 	const struct vec3 wo = vec3_sub(vec3_scale(m, 2 * cos_d), wi);
 	const bool reflects = cos_d > 0; /* false for NaN */
@@ -43,7 +44,7 @@ static enum status add_sample(const struct described *item, const struct distrib
 		[SAMPLE_OY] = reflects ? wo.y : NAN,
 		[SAMPLE_OZ] = reflects ? wo.z : NAN,
 		[SAMPLE_PDF_O] = reflects ? pdf / (4 * cos_d) : NAN,
-		[SAMPLE_WEIGHT] = isnan(wi.z) ? NAN : distribution_weight(distribution, item->gaf, wi, m, pdf),
+		[SAMPLE_WEIGHT] = isnan(wi.z) ? NAN : vndf_weight(&item->distribution.ndf, item->gaf, wi, m, pdf),
 	};
 	char text[SAMPLE_COLUMNS][CSV_NUMBER_SIZE];
 	const char *cell[SAMPLE_COLUMNS];
@@ -53,16 +54,15 @@ static enum status add_sample(const struct described *item, const struct distrib
 }
 
 /* The way that --sampling names, or else the best that there is. */
-static enum status choose(const struct options *options, const struct described *item,
-			  struct distribution_sampler *sampler, struct error *error)
+static enum status choose(const struct options *options, const struct described *item, struct sampler *sampler,
+			  struct error *error)
 {
 	const bool given = options_given(options, "sampling"), seen = !isnan(options->theta_i);
-	const bool visible = given || seen || item->distribution.is_ellipsoid;
-	enum sampling sampling = visible ? options->sampling : SAMPLING_NDF;
-	enum status status = distribution_sampler_init(sampler, &item->distribution, sampling);
+	enum sampling sampling = given || seen ? options->sampling : SAMPLING_NDF;
+	enum status status = sampler_init(sampler, &item->distribution.ndf, sampling);
 	if (status != STATUS_OK && !given && sampling != SAMPLING_NDF) {
 		sampling = SAMPLING_NDF;
-		status = distribution_sampler_init(sampler, &item->distribution, sampling);
+		status = sampler_init(sampler, &item->distribution.ndf, sampling);
 	}
 	if (status != STATUS_OK)
 		return error_set(error, STATUS_UNSUPPORTED, "%s has no --sampling %s%s", item->distribution.name,
@@ -77,7 +77,7 @@ static enum status draw(const struct options *options, const struct described *i
 			struct error *error)
 {
 	const struct vec3 wi = distribution_direction(options->theta_i, options->phi_i);
-	struct distribution_sampler sampler;
+	struct sampler sampler;
 	enum status status = choose(options, item, &sampler, error);
 	if (status != STATUS_OK)
 		return status;

@@ -67,7 +67,7 @@ static int check_file(const struct options *options, const struct cook_torrance 
 	if (samples && (options_given(options, "phi") || options_given(options, "bins")))
 		return options_usage(COMMAND_SYNTH, "--%s means nothing for a CSV",
 				     options_given(options, "phi") ? "phi" : "bins");
-	if (!samples && model->ndf.sigma_x != model->ndf.sigma_y)
+	if (!samples && ndf_is_anisotropic(&model->ndf))
 		return options_usage(COMMAND_SYNTH, "a MERL file is isotropic: expected OUT.csv with --sigma SX,SY");
 	return -1;
 }
@@ -76,21 +76,25 @@ int cmd_synth(int argc, char **argv, atomic_bool *cancel)
 {
 	struct options options;
 	struct cook_torrance model;
+	struct distribution distribution = {0};
 	struct error error;
 	int code = options_parse(&options, COMMAND_SYNTH, argc, argv, cancel);
 	if (code < 0 && options.n_paths > 1)
 		code = options_usage(COMMAND_SYNTH, "expected one OUT.binary or OUT.csv, found %d names",
 				     options.n_paths);
 	if (code < 0)
-		code = options_model(&options, &model);
+		code = options_model(&options, &model, &distribution);
 	if (code < 0 && options_given(&options, "seed") && !(options.noise > 0))
 		code = options_usage(COMMAND_SYNTH, "--seed means nothing without --noise");
 	const bool samples = code < 0 && outputs_end_with(options.path[0], ".csv");
 	if (code < 0)
 		code = check_file(&options, &model, samples);
-	if (code >= 0)
+	if (code >= 0) {
+		distribution_free(&distribution);
 		return code;
+	}
 	const enum status status = synthesise(&options, &model, samples, &error);
+	distribution_free(&distribution);
 	if (status != STATUS_OK && status != STATUS_INTERRUPTED)
 		report_error("%s", error.text);
 	if (status != STATUS_OK)

@@ -2,10 +2,14 @@
 #include "fit/error/kernel.h"
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
-/* Compiled twice, see the Makefile: KERNEL_NAME is kernel_plain or kernel_avx2. */
+/* Compiled once for each width of vectors, see the Makefile: KERNEL_NAME is kernel_plain, kernel_avx2 or kernel_avx512. */
 #ifndef KERNEL_NAME
 #define KERNEL_NAME kernel_plain
+#endif
+#ifndef KERNEL_LANES
+#define KERNEL_LANES 8
 #endif
 #define TEXT(x) #x
 #define NAME_TEXT(x) TEXT(x)
@@ -141,19 +145,20 @@ static void lobe_scattered(enum kernel_gaf gaf, const struct kernel_shape *shape
 	}
 }
 
-/* Eight lanes, whatever the machine has: a compiler without registers this wide makes two operations of each. Sums
- * are kept lane by lane, so both kernels add in the same order. */
-typedef float lanes __attribute__((vector_size(32), may_alias));
-typedef int32_t lanes_int __attribute__((vector_size(32), may_alias));
-typedef double lanes_double __attribute__((vector_size(64)));
-enum { LANES = 8 };
+/* Eight lanes or sixteen; a compiler without registers this wide makes two operations of each. Sixteen samples are always
+ * added in two groups of eight, lane by lane: so all kernels add in the same order. */
+enum { LANES = KERNEL_LANES, GROUP = 8, GROUPS = 2, VECTORS = GROUPS * GROUP / LANES };
+typedef float lanes __attribute__((vector_size(4 * LANES), may_alias));
+typedef int32_t lanes_int __attribute__((vector_size(4 * LANES), may_alias));
+typedef float group __attribute__((vector_size(4 * GROUP)));
+typedef double group_double __attribute__((vector_size(8 * GROUP)));
 
 struct lane_evaluation {
 	lanes x[KERNEL_TERMS], tau, floor;
 };
 
 struct accumulator {
-	lanes error, slope[KERNEL_TERMS], curvature[KERNEL_SECOND];
+	lanes error[VECTORS], slope[KERNEL_TERMS][VECTORS], curvature[KERNEL_SECOND][VECTORS];
 };
 
 /* 1/x to about 1 %, x > 0: the curvature is an estimate, and a division takes longer than all the rest. */
@@ -164,10 +169,12 @@ __attribute__((always_inline)) static inline lanes rough_inverse(lanes x)
 	return y * (2 - x * y);
 }
 
-/* Adds the members m[0], m[KERNEL_BLOCK], ... of eight samples, those from `from` on in each term. Constant arguments are folded in. */
+/* Adds the members m[0], m[KERNEL_BLOCK], ... of a vector of samples, those from `from` on in each term, to the sums' v-th
+ * vectors. Constant arguments are folded in. */
 __attribute__((always_inline)) static inline void add_lanes(int terms, int members, bool curved, const float *m,
 							    const float *const term[], int from,
-							    const struct lane_evaluation *at, struct accumulator *sum)
+							    const struct lane_evaluation *at, int v,
+							    struct accumulator *sum)
 {
 	lanes a[KERNEL_TERMS], f;
 
@@ -185,7 +192,7 @@ __attribute__((always_inline)) static inline void add_lanes(int terms, int membe
 		const lanes r = *(const lanes *)(m + from + n * KERNEL_BLOCK) - f;
 		const lanes size = (lanes)((lanes_int)r & 0x7fffffff);
 
-		sum->error += size;
+		sum->error[v] += size;
 		whole += r < 0;
 		if (curved)
 			near += size < window;
@@ -195,7 +202,7 @@ __attribute__((always_inline)) static inline void add_lanes(int terms, int membe
 	if (members % 2)
 		half += 0.5F;
 	for (int t = 0; t < terms; t++)
-		sum->slope[t] += half * a[t];
+		sum->slope[t][v] += half * a[t];
 	if (curved) {
 		const lanes density = -__builtin_convertvector(near, lanes) * rough_inverse(wide);
 		int second = 0;
@@ -204,50 +211,54 @@ __attribute__((always_inline)) static inline void add_lanes(int terms, int membe
 			const lanes part = density * a[t];
 
 			for (int u = t; u < terms; u++)
-				sum->curvature[second++] += part * a[u];
+				sum->curvature[second++][v] += part * a[u];
 		}
 	}
 }
 
-/* The sums of a block, a lane each, in double. */
+/* The sums of a block, a lane of a group each, in double. */
 struct lane_sums {
-	lanes_double error, slope[KERNEL_TERMS], curvature[KERNEL_SECOND];
+	group_double error, slope[KERNEL_TERMS], curvature[KERNEL_SECOND];
 };
 
-__attribute__((always_inline)) static inline lanes_double widen(lanes a, lanes b)
+/* Both groups together. */
+__attribute__((always_inline)) static inline group_double widen(const lanes *a)
 {
-	return __builtin_convertvector(a + b, lanes_double);
+	group both[GROUPS];
+
+	memcpy(both, a, sizeof both);
+	return __builtin_convertvector(both[0] + both[1], group_double);
 }
 
-static inline double total(const lanes_double *a)
+static inline double total(const group_double *a)
 {
 	double sum = 0;
 
-	for (int n = 0; n < LANES; n++)
+	for (int n = 0; n < GROUP; n++)
 		sum += (*a)[n];
 	return sum;
 }
 
-/* A run, with two accumulators in turn, so that one addition need not wait for the other. */
+/* A run. The groups have accumulators of their own, so that one addition need not wait for the other. */
 __attribute__((always_inline)) static inline void run(int terms, int members, bool curved, const float *m,
 						      const float *const term[], int from,
 						      const struct lane_evaluation *at, struct lane_sums *sums)
 {
-	struct accumulator a = {0}, b = {0};
+	struct accumulator a = {0};
 
-	for (int n = from; n < from + RUN; n += 2 * LANES) {
+	for (int n = from; n < from + RUN; n += GROUPS * GROUP) {
 		/* What comes next in memory, the next channel or block: the processor's own prefetching ends at each page. */
 		for (int member = members; member < 2 * members; member++)
 			__builtin_prefetch(m + n + member * KERNEL_BLOCK);
-		add_lanes(terms, members, curved, m, term, n, at, &a);
-		add_lanes(terms, members, curved, m, term, n + LANES, at, &b);
+		for (int v = 0; v < VECTORS; v++)
+			add_lanes(terms, members, curved, m, term, n + v * LANES, at, v, &a);
 	}
-	sums->error += widen(a.error, b.error);
+	sums->error += widen(a.error);
 	for (int t = 0; t < terms; t++)
-		sums->slope[t] += widen(a.slope[t], b.slope[t]);
+		sums->slope[t] += widen(a.slope[t]);
 	if (curved)
 		for (int t = 0; t < terms * (terms + 1) / 2; t++)
-			sums->curvature[t] += widen(a.curvature[t], b.curvature[t]);
+			sums->curvature[t] += widen(a.curvature[t]);
 }
 
 __attribute__((always_inline)) static inline void block(int terms, int members, bool curved, const float *m,
@@ -315,4 +326,59 @@ static void pass(int terms, int members, const float *m, const float *const term
 	of[terms](members, m, term, at, sums);
 }
 
-const struct kernel KERNEL_NAME = {NAME_TEXT(KERNEL_NAME), lobe, lobe_scattered, pass};
+__attribute__((always_inline)) static inline void
+signs_of(int terms, int members, const float *m, const float *const term[], const double x[],
+	 float *const weight[]) /* cppcheck-suppress constParameter; it is written through */
+{
+	const lanes zero = {0};
+
+	for (int n = 0; n < KERNEL_BLOCK; n += LANES) {
+		lanes f = (float)x[0] * *(const lanes *)(term[0] + n);
+		lanes_int sign = {0};
+
+		for (int t = 1; t < terms; t++)
+			f += (float)x[t] * *(const lanes *)(term[t] + n);
+		/* Each comparison is -1 where it holds. */
+		for (int a = 0; a < members; a++) {
+			const lanes r = *(const lanes *)(m + n + a * KERNEL_BLOCK) - f;
+
+			sign += (r < zero) - (r > zero);
+		}
+		const lanes sum = __builtin_convertvector(sign, lanes);
+
+		for (int t = 1; t < terms; t++)
+			*(lanes *)(weight[t] + n) += (float)x[t] * sum;
+	}
+}
+
+static void signs(int terms, int members, const float *m, const float *const term[], const double x[],
+		  float *const weight[])
+{
+	if (terms == 2 && members == 2)
+		signs_of(2, 2, m, term, x, weight);
+	else if (terms == 2 && members == 1)
+		signs_of(2, 1, m, term, x, weight);
+	else
+		signs_of(terms, members, m, term, x, weight);
+}
+
+static double change(const float *weight, const float *from, const float *to)
+{
+	group_double sum = {0};
+
+	for (int n = 0; n < KERNEL_BLOCK; n += RUN) {
+		lanes a[VECTORS] = {{0}};
+
+		for (int i = n; i < n + RUN; i += GROUPS * GROUP)
+			for (int v = 0; v < VECTORS; v++) {
+				const int at = i + v * LANES;
+
+				a[v] += *(const lanes *)(weight + at) *
+					(*(const lanes *)(to + at) - *(const lanes *)(from + at));
+			}
+		sum += widen(a);
+	}
+	return total(&sum);
+}
+
+const struct kernel KERNEL_NAME = {NAME_TEXT(KERNEL_NAME), lobe, lobe_scattered, pass, signs, change};

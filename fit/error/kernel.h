@@ -4,7 +4,7 @@
  * A sample is one value of the model; it stands for one measured entry (single) or for two (pair), since
  * phi_d -> 180 deg - phi_d swaps wi and wo and leaves the model as it is. Samples come in blocks of
  * KERNEL_BLOCK, all of one sort, padded with samples whose members are all zero: those add nothing.
- * The file is compiled once for any machine and once for AVX2; kernel_pick() chooses at run time. Both give the same
+ * The file is compiled for any machine, for AVX2 and for AVX-512; kernel_pick() chooses at run time. All give the same
  * bits: no sum depends on the width of a register, and no multiplication is joined with an addition. */
 #ifndef KERNEL_H
 #define KERNEL_H
@@ -106,11 +106,18 @@ struct kernel {
 	 * coefficients. */
 	void (*pass)(int terms, int members, const float *value, const float *const term[],
 		     const struct kernel_evaluation *at, struct kernel_sums *sums);
+	/* signs - of each sample of one block the sum of sign(r) over the members, for the coefficients x; times x_t it is
+	 * added to weight[t] for t >= 1. */
+	void (*signs)(int terms, int members, const float *value, const float *const term[], const double x[],
+		      float *const weight[]);
+	/* change - the sum of weight (to - from) of one block. */
+	double (*change)(const float *weight, const float *from, const float *to);
 };
 
 extern const struct kernel kernel_plain;
 #ifdef KERNEL_HAVE_AVX2
 extern const struct kernel kernel_avx2;
+extern const struct kernel kernel_avx512;
 #endif
 
 /* kernel_pick - the fastest kernel that this processor can run. */

@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-enum { LEAST_DISTANCE_DIMS = 6, LEAST_DISTANCE_ROWS = 112 };
+enum { LEAST_DISTANCE_DIMS = 8, LEAST_DISTANCE_ROWS = 112 };
 
 struct least_distance {
 	int dims, n_rows;

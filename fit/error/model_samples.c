@@ -87,7 +87,7 @@ static size_t set_directions(struct scattered *s, const struct grid *grid)
 
 enum status model_samples(const struct cook_torrance *model, int threads, struct measurement *measurement)
 {
-	const bool axes = model->ndf.sigma_x != model->ndf.sigma_y;
+	const bool axes = ndf_is_anisotropic(&model->ndf);
 	const struct grid *grid = axes ? &anisotropic : &isotropic;
 	const size_t most = (size_t)(grid->n_theta_i * grid->n_phi_i) * (size_t)(grid->n_theta_h * grid->n_phi_h);
 	const enum status status = measurement_scattered(measurement, most);

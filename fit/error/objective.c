@@ -43,8 +43,7 @@ static int channel_of(const struct objective *o, int array)
 	return array < o->terms.n ? 0 : 1 + array - o->terms.n;
 }
 
-/* The array of a term for one channel. */
-static int array_of(const struct objective *o, int term, int channel)
+int objective_array(const struct objective *o, int term, int channel)
 {
 	return o->terms.term[term] == TERM_LOBE && channel > 0 && o->n_arrays > o->terms.n ? o->terms.n + channel - 1
 											   : term;
@@ -81,6 +80,7 @@ enum status objective_init(struct objective *o, const struct sample_set *table, 
 				.class = class,
 				.kernel = kernel_pick(),
 				.threads = threads,
+				.density = density,
 				.terms = term_list_of(options)};
 	o->lobe[0].tabulated.sigma = o->lobe[1].tabulated.sigma = o->grazing_exponent = NAN;
 	objective_forget(o);
@@ -92,7 +92,9 @@ enum status objective_init(struct objective *o, const struct sample_set *table, 
 	}
 	o->row = malloc((size_t)o->n_arrays * sizeof *o->row);
 	o->sums = malloc((size_t)table->n_blocks * sizeof *o->sums);
-	o->is_exact = table->scattered && density == MASKING_FINE && table->n_samples <= OBJECTIVE_EXACT_SAMPLES;
+	/* Of tilted facets G1 is no function of one number. */
+	o->is_exact = table->scattered && ((density == MASKING_FINE && table->n_samples <= OBJECTIVE_EXACT_SAMPLES) ||
+					   (options->anisotropic && ndf_has_tilt(class)));
 	if (!complete || !o->row || !o->sums || init_tables(o, density) != STATUS_OK) {
 		objective_free(o);
 		return STATUS_NO_MEMORY;
@@ -138,6 +140,8 @@ struct shape shape_of(const struct cook_torrance *model)
 			      .k = model->k,
 			      .second_sigma = model->second.sigma_x,
 			      .second_gamma = model->second.gamma,
+			      .tilt_x = ndf->tilt_x,
+			      .tilt_y = ndf->tilt_y,
 			      .grazing = model->grazing};
 
 	if (model->per_channel_ior) {
@@ -171,6 +175,8 @@ enum status shape_ndf(const struct shape *shape, const struct ndf_class *class, 
 
 	if (status == STATUS_OK && shape->stretch != 0)
 		status = ndf_turn(ndf, shape->angle);
+	if (status == STATUS_OK && (shape->tilt_x != 0 || shape->tilt_y != 0))
+		status = ndf_tilt(ndf, shape->tilt_x, shape->tilt_y);
 	if (status == STATUS_OK && lambda != LAMBDA_EXACT)
 		status = ndf_set_lambda_form(ndf, lambda);
 	return status == STATUS_UNSUPPORTED ? STATUS_OK : status;
@@ -228,8 +234,9 @@ static enum status tabulate_lobe(struct objective *o, int which, const struct sh
 	const bool same_gamma = shape->gamma == have->gamma || !ndf_has_gamma(o->class);
 	struct ndf ndf;
 
-	if (lobe->given || (shape->sigma == have->sigma && same_gamma && shape->stretch == have->stretch &&
-			    shape->angle == have->angle))
+	if (lobe->given ||
+	    (shape->sigma == have->sigma && same_gamma && shape->stretch == have->stretch &&
+	     shape->angle == have->angle && shape->tilt_x == have->tilt_x && shape->tilt_y == have->tilt_y))
 		return STATUS_OK;
 	const enum status status = shape_ndf(shape, o->class, o->options->lambda, &ndf);
 
@@ -345,7 +352,7 @@ static double exact_term(const struct objective *o, int array, struct vec3 wi, s
 	return facets == 0 ? 0 : F_of_term(o, term, channel_of(o, array), cos_d) * facets;
 }
 
-static void exact_block(struct objective *o, int array, int block)
+static void exact_block(const struct objective *o, int array, int block, float *term)
 {
 	const struct sample_set *table = o->table;
 	const struct scattered *scattered = table->scattered;
@@ -353,9 +360,9 @@ static void exact_block(struct objective *o, int array, int block)
 
 	for (size_t n = from; n < from + KERNEL_BLOCK; n++) {
 		const struct vec3 wi = scattered->wi[table->entry[n]], wo = scattered->wo[table->entry[n]];
+		const double w = (double)table->w[n];
 
-		o->term[array][n] =
-			table->w[n] > 0 ? (float)fmin((double)table->w[n] * exact_term(o, array, wi, wo), TERM_MAX) : 0;
+		term[n - from] = w > 0 ? (float)fmin(w * exact_term(o, array, wi, wo), TERM_MAX) : 0;
 	}
 }
 
@@ -368,7 +375,7 @@ static enum kernel_gaf kernel_gaf(const struct objective *o)
 	return gaf[o->options->criterion.gaf];
 }
 
-static void table_block(struct objective *o, int array, int block)
+static void table_block(const struct objective *o, int array, int block, float *s)
 {
 	const size_t at = (size_t)block * KERNEL_BLOCK;
 	const enum term term = term_of(o, array);
@@ -378,30 +385,29 @@ static void table_block(struct objective *o, int array, int block)
 
 	if (grazing)
 		samples.geometric_factor = o->table->w + at;
-	o->kernel->lobe(grazing ? KERNEL_SUM : kernel_gaf(o), &g1, o->row[array], &samples, o->term[array] + at);
+	o->kernel->lobe(grazing ? KERNEL_SUM : kernel_gaf(o), &g1, o->row[array], &samples, s);
 }
 
-static void scattered_block(struct objective *o, int array, int block)
+void objective_term_block(const struct objective *o, int array, int block, float *term)
 {
-	const struct kernel_scattered samples = sample_set_scattered_block(o->table, block);
+	if (!o->table->scattered) {
+		table_block(o, array, block, term);
+	} else if ((o->is_exact && !o->lobe[0].given) || term_of(o, array) == TERM_GRAZING) {
+		exact_block(o, array, block, term);
+	} else {
+		const struct kernel_scattered samples = sample_set_scattered_block(o->table, block);
 
-	o->kernel->lobe_scattered(kernel_gaf(o), &o->scattered[array].shape, &samples,
-				  o->term[array] + (size_t)block * KERNEL_BLOCK);
+		o->kernel->lobe_scattered(kernel_gaf(o), &o->scattered[array].shape, &samples, term);
+	}
 }
 
-static void lobe_block(struct objective *o, int block)
+static void lobe_block(const struct objective *o, int block)
 {
 	for (int a = 1; a < o->n_arrays; a++)
-		if (!o->table->scattered)
-			table_block(o, a, block);
-		else if ((o->is_exact && !o->lobe[0].given) || term_of(o, a) == TERM_GRAZING)
-			exact_block(o, a, block);
-		else
-			scattered_block(o, a, block);
+		objective_term_block(o, a, block, o->term[a] + (size_t)block * KERNEL_BLOCK);
 }
 
-/* A solve goes over slices: a channel each, or one that stands for all. */
-static int n_slices(const struct objective *o)
+int objective_slices(const struct objective *o)
 {
 	return o->options->gray ? 1 : MERL_CHANNELS;
 }
@@ -416,14 +422,14 @@ static void pass_block(struct objective *o, const struct evaluation *asked, int 
 {
 	const struct sample_set *t = o->table;
 	const size_t at = (size_t)block * KERNEL_BLOCK;
-	const int members = (block < t->n_pair_blocks ? 2 : 1) * MERL_CHANNELS / n_slices(o);
+	const int members = (block < t->n_pair_blocks ? 2 : 1) * MERL_CHANNELS / objective_slices(o);
 	const float *term[KERNEL_TERMS] = {t->w + at};
 
-	for (int c = 0; c < n_slices(o); c++) {
+	for (int c = 0; c < objective_slices(o); c++) {
 		if (!asked->wanted[c])
 			continue;
 		for (int n = 1; n < o->terms.n; n++)
-			term[n] = o->term[array_of(o, n, c)] + at;
+			term[n] = o->term[objective_array(o, n, c)] + at;
 		o->kernel->pass(o->terms.n, members, sample_set_value(t, block, c), term, &asked->at[c],
 				&o->sums[block][c]);
 	}
@@ -434,7 +440,7 @@ static struct evaluation in_unit(const struct objective *o, const struct evaluat
 {
 	struct evaluation own = *asked;
 
-	for (int c = 0; c < n_slices(o); c++) {
+	for (int c = 0; c < objective_slices(o); c++) {
 		for (int t = 0; t < o->terms.n; t++)
 			own.at[c].x[t] *= o->table->unit;
 		own.at[c].floor *= o->table->unit;
@@ -482,18 +488,26 @@ static void pass(struct objective *o, const struct evaluation *wanted, bool lobe
 		pass_block(o, asked, (int)block);
 	}
 #pragma GCC diagnostic pop
-	for (int c = 0; c < n_slices(o); c++)
+	for (int c = 0; c < objective_slices(o); c++)
 		if (asked->wanted[c])
 			total[c] = add_blocks(o, c);
 }
 
-enum status objective_lobe(struct objective *o, const struct shape *shape)
+enum status objective_tabulate(struct objective *o, const struct shape *shape)
 {
 	const enum status status = tabulate(o, shape);
 
+	if (status == STATUS_OK)
+		fill_rows(o, shape);
+	return status;
+}
+
+enum status objective_lobe(struct objective *o, const struct shape *shape)
+{
+	const enum status status = objective_tabulate(o, shape);
+
 	if (status != STATUS_OK)
 		return status;
-	fill_rows(o, shape);
 	for (int block = 0; block < o->table->n_blocks; block++)
 		lobe_block(o, block);
 	return STATUS_OK;
@@ -570,7 +584,7 @@ static bool helps(const struct shape *a, const struct shape *b)
 /* The problems that a solve falls into: one a slice, or one for all where the slices share coefficients. */
 static int n_problems(const struct objective *o)
 {
-	return is_joint(o) ? 1 : n_slices(o);
+	return is_joint(o) ? 1 : objective_slices(o);
 }
 
 /* The unknown of a problem that a slice's coefficient is. Where they share, kd of each channel comes first. */
@@ -592,7 +606,7 @@ static int first_slice(const struct objective *o, int p)
 
 static int end_slice(const struct objective *o, int p)
 {
-	return is_joint(o) ? n_slices(o) : p + 1;
+	return is_joint(o) ? objective_slices(o) : p + 1;
 }
 
 static double sum_measured(const struct objective *o, int p)
@@ -628,6 +642,17 @@ static void constrain_F(const struct objective *o, struct bundle_domain *domain,
 	}
 }
 
+/* Two lobes send back no more than one may. */
+static void constrain_lobes(const struct objective *o, struct bundle_domain *domain, int first)
+{
+	double *normal = domain->normal[domain->n_linear];
+
+	memset(normal, 0, sizeof domain->normal[0]);
+	for (int t = 1; t < o->terms.n; t++)
+		normal[first + t - 1] = o->terms.term[t] == TERM_LOBE || o->terms.term[t] == TERM_SECOND;
+	domain->level[domain->n_linear++] = objective_upper_bound(o->options, true);
+}
+
 static struct bundle_domain domain_of(const struct objective *o, int p)
 {
 	struct bundle_domain domain = {.n = n_unknowns(o)};
@@ -641,6 +666,8 @@ static struct bundle_domain domain_of(const struct objective *o, int p)
 
 	if (o->options->fresnel == FRESNEL_F82 && domain.hi[first + 1] > 0)
 		constrain_F(o, &domain, first);
+	if (has_term(o, TERM_SECOND) && !o->options->unbounded)
+		constrain_lobes(o, &domain, first);
 	return domain;
 }
 
@@ -690,7 +717,7 @@ static void finish(const struct objective *o, const struct bundle problem[], str
 
 	*linear = (struct linear){.error = 0};
 	for (int c = 0; c < MERL_CHANNELS; c++) {
-		const int slice = c < n_slices(o) ? c : 0;
+		const int slice = c < objective_slices(o) ? c : 0;
 		const struct bundle *p = &problem[is_joint(o) ? 0 : slice];
 
 		for (int t = 0; t < o->terms.n; t++)
@@ -758,11 +785,10 @@ double objective_eval(struct objective *o, const struct shape *shape, double tol
 	struct kernel_sums total[MERL_CHANNELS];
 	bool lobe = true, going = true;
 
-	if (tabulate(o, shape) != STATUS_OK) {
+	if (objective_tabulate(o, shape) != STATUS_OK) {
 		*linear = (struct linear){.error = OBJECTIVE_NO_FIT};
 		return OBJECTIVE_NO_FIT;
 	}
-	fill_rows(o, shape);
 	start(o, shape, problem, tolerance, certify);
 	while (going) {
 		struct evaluation asked = {.wanted = {false}};
@@ -788,15 +814,14 @@ double objective_error(struct objective *o, const struct shape *shape, const str
 	struct kernel_sums total[MERL_CHANNELS];
 	struct evaluation asked = {.wanted = {false}};
 
-	if (tabulate(o, shape) != STATUS_OK)
+	if (objective_tabulate(o, shape) != STATUS_OK)
 		return OBJECTIVE_NO_FIT;
-	fill_rows(o, shape);
-	for (int c = 0; c < n_slices(o); c++) {
+	for (int c = 0; c < objective_slices(o); c++) {
 		asked.wanted[c] = true;
 		memcpy(asked.at[c].x, linear->coefficient[c], sizeof asked.at[c].x);
 	}
 	pass(o, &asked, true, total);
-	for (int c = 0; c < n_slices(o); c++)
+	for (int c = 0; c < objective_slices(o); c++)
 		error += total[c].error;
 	for (int c = 0; c < MERL_CHANNELS; c++)
 		sum += o->table->sum[c];

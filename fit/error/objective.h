@@ -15,6 +15,7 @@ struct shape {
 	double channel_k[MERL_CHANNELS];
 	double stretch;                    /* ln(sigma_x/sigma_y); 0: isotropic */
 	double angle;                      /* of the axis of sigma_x, degrees */
+	double tilt_x, tilt_y;             /* ndf_tilt() */
 	double second_sigma, second_gamma; /* of the second lobe */
 	double grazing;                    /* exponent of the grazing term */
 };
@@ -76,6 +77,7 @@ struct objective {
 	const struct fit_options *options;
 	const struct ndf_class *class;
 	const struct kernel *kernel;
+	enum masking_density density;
 	int threads; /* more than 1: called by one thread of an OpenMP team, whose others help */
 	struct term_list terms;
 	struct objective_lobe {
@@ -90,9 +92,9 @@ struct objective {
 	struct masking grazing;           /* the grazing term's function of a direction, */
 	double grazing_exponent;          /* for this exponent */
 	struct cook_torrance optics;      /* F of the shape, and G */
-	bool is_exact;                    /* scattered entries, few enough to have the terms at each without tables */
-	float *term[OBJECTIVE_ARRAYS];    /* a float a sample; [0] is not used: it is the weight */
-	float (*row)[MERL_ROWS];          /* one an array */
+	bool is_exact; /* scattered entries whose terms are had without tables: few, or of tilted facets */
+	float *term[OBJECTIVE_ARRAYS];             /* a float a sample; [0] is not used: it is the weight */
+	float (*row)[MERL_ROWS];                   /* one an array */
 	struct kernel_sums (*sums)[MERL_CHANNELS]; /* one set a block */
 	long passes;                               /* over the table, so far */
 	struct linear start;                       /* where the next inner solve begins: the last one's end */
@@ -124,6 +126,16 @@ void objective_unfix(struct objective *objective);
 /* objective_use - from now on the given isotropic distribution, whatever sigma and gamma a shape has, from tables; *ndf is only
  * read during the call. */
 void objective_use(struct objective *objective, const struct ndf *ndf);
+
+/* objective_tabulate - the tables of a shape from which its terms are computed. Returns STATUS_DOMAIN outside the NDF's domain.
+ * objective_term_block - array >= 1 of one block of samples, from them. */
+MUST_CHECK enum status objective_tabulate(struct objective *objective, const struct shape *shape);
+void objective_term_block(const struct objective *objective, int array, int block, float *term);
+/* objective_array - the array of a term for one channel. */
+int objective_array(const struct objective *objective, int term, int channel);
+
+/* objective_slices - a solve goes over slices: a channel each, or one that stands for all. */
+int objective_slices(const struct objective *objective);
 
 /* objective_lobe - the terms of a shape, sample by sample, into objective->term: [1] is the lobe for ks = 1.
  * Returns STATUS_DOMAIN outside the NDF's domain. */

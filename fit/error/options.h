@@ -42,6 +42,7 @@ static inline bool criterion_equal(const struct criterion *a, const struct crite
 #define FIT_SIGMA_MIN 1e-4
 #define FIT_SIGMA_MAX 4.0
 #define FIT_RATIO_MAX 50.0 /* of sigma_x and sigma_y */
+#define FIT_TILT_MAX 1.5
 #define FIT_GAMMA_MIN 1.5001
 #define FIT_GAMMA_MAX 1000.0
 #define FIT_IOR_MIN 1.0001

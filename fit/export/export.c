@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "data_readers/text_quote.h"
-#include "fit/error/entries.h"
 #include "fit/error/model_table.h"
-#include "fit/error/sample_set.h"
 #include "fit/export/export_format.h"
 #include "fit/results/csv_number.h"
 
@@ -67,32 +65,18 @@ bool export_shows_model(const struct export *export)
 	return !targets[export->format]->shows;
 }
 
-enum status export_shown_table(const struct export *export, struct measurement *measurement)
+void export_shown_f(const void *export, struct vec3 wi, struct vec3 wo, double f[3])
 {
-	const int n_phi_d = 180;
-	const struct entries entries = entries_make(export->source.fit->criterion.bins, n_phi_d);
-	const enum status status = measurement_alloc(measurement, n_phi_d);
-	if (status != STATUS_OK)
-		return status;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(export->source.fit->threads)
-	for (int i = 0; i < MERL_THETA_H; i++)
-		for (int jk = 0; jk < MERL_THETA_D * n_phi_d; jk++) {
-			const int j = jk / n_phi_d, k = jk % n_phi_d;
-			struct vec3 wi, wo;
-			double f[3];
-			entries_dirs(&entries, i, j, k, &wi, &wo);
-			if (!entry_in_range(wi, wo, 0))
-				continue;
-			targets[export->format]->shows(&export->model, wi, wo, f);
-			for (int c = 0; c < MERL_CHANNELS; c++)
-				measurement->value[c][measurement_at(n_phi_d, i, j, k)] = (float)f[c];
-		}
-	return STATUS_OK;
+	const struct export *shown = export;
+	if (export_shows_model(shown))
+		cook_torrance_f(&shown->model, wi, wo, f);
+	else
+		targets[shown->format]->shows(shown, wi, wo, f);
 }
 
 bool export_has_axes(const struct cook_torrance *model)
 {
-	return export_max(model->ks) > 0 && model->ndf.sigma_x != model->ndf.sigma_y;
+	return export_max(model->ks) > 0 && ndf_is_anisotropic(&model->ndf);
 }
 
 enum status export_as_it_is(struct export *export, const char *text)
@@ -132,11 +116,19 @@ void export_describe(const struct export *export, char text[EXPORT_TEXT])
 	for (int i = axes; ndf_param_at(model->ndf.class, i); i++)
 		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " %s %s",
 				 ndf_param_at(model->ndf.class, i)->name, csv_number(number, model->ndf.param[i]));
-	if (axes) {
+	if (axes && ndf_is_tabulated(model->ndf.class)) {
+		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " of two tables, angle %s",
+				 csv_number(number, model->ndf.angle));
+	} else if (axes) {
 		char sigma_y[CSV_NUMBER_SIZE], angle[CSV_NUMBER_SIZE];
 		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " sigma_x %s sigma_y %s angle %s",
 				 csv_number(number, model->ndf.sigma_x), csv_number(sigma_y, model->ndf.sigma_y),
 				 csv_number(angle, model->ndf.angle));
+	}
+	if (axes && ndf_is_tilted(&model->ndf)) {
+		char tilt_y[CSV_NUMBER_SIZE];
+		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), " tilt %s,%s",
+				 csv_number(number, model->ndf.tilt_x), csv_number(tilt_y, model->ndf.tilt_y));
 	}
 	used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", %s G, %s F", gaf_name(model->gaf),
 			 fresnel_name(model->fresnel));

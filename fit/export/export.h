@@ -6,6 +6,7 @@
 #ifndef EXPORT_H
 #define EXPORT_H
 
+#include "data_readers/spectrum.h"
 #include "fit/search/fit.h"
 #include <stdio.h>
 
@@ -41,6 +42,13 @@ struct export_source {
 
 enum { EXPORT_TEXT = 512 };
 
+/* struct export_bands - an index of refraction for each band of a spectrum, which stands for a coloured ks. */
+struct export_bands {
+	bool used;
+	double n[SPECTRUM_BANDS], k[SPECTRUM_BANDS];
+	struct spectrum_bands colour;
+};
+
 /* struct export - what is going to be written. */
 struct export
 {
@@ -48,6 +56,7 @@ struct export
 	struct export_source source;
 	struct cook_torrance model; /* the source's, or the one fitted in its place */
 	bool substitute;            /* the latter */
+	struct export_bands bands;  /* EXPORT_PBRT */
 	char why[EXPORT_TEXT];      /* one line: "exact: ..." or "approximate: ..." */
 	size_t nodes;               /* EXPORT_BSDF: half vectors along each side; 0 for others */
 	char cost[EXPORT_TEXT];     /* one line: what the substitute costs in error; "" if there is none */
@@ -81,8 +90,7 @@ MUST_CHECK enum status export_table(const struct export *export, struct measurem
 /* export_shows_model - whether what the target shows is export->model by cook_torrance_f(). */
 bool export_shows_model(const struct export *export);
 
-/* export_shown_table - a table, 180 entries along phi_d, of what the target shows, to be freed with measurement_free(). For
- * isotropic models. */
-MUST_CHECK enum status export_shown_table(const struct export *export, struct measurement *measurement);
+/* export_shown_f - what the target shows, 1/sr; wi, wo above the horizon. `export` is a struct export. */
+void export_shown_f(const void *export, struct vec3 wi, struct vec3 wo, double f[3]);
 
 #endif

@@ -637,11 +637,20 @@ static enum status brdf_write(const struct export *export, FILE *file, struct er
 
 static enum status brdf_prepare(struct export *export, struct error *error)
 {
+	if (export_max(export->model.ks) > 0 && ndf_is_tabulated(export->model.ndf.class) &&
+	    export_has_axes(&export->model))
+		return error_set(error, STATUS_UNSUPPORTED,
+				 "the shader has no anisotropic table (--format bsdf and json have every model)");
+	if (export_max(export->model.ks) > 0 && ndf_is_tilted(&export->model.ndf))
+		return error_set(error, STATUS_UNSUPPORTED,
+				 "the shader has no tilted facets (--format bsdf and json have every model)");
 	if (cook_torrance_is_rich(&export->model))
 		return error_set(error, STATUS_UNSUPPORTED,
 				 "the shader has neither a second lobe nor a diffuse term of grazing directions nor "
 				 "f82 nor an index for each channel "
 				 "(--format bsdf, merl and json have every model)");
+	if (ndf_has_tilt(export->model.ndf.class) && !ndf_plain(&export->model.ndf, &export->model.ndf))
+		return error_set(error, STATUS_UNSUPPORTED, "the shader has no such ellipsoid");
 	return export_as_it_is(
 		export, "the model itself, in 32-bit floats (relative error 3e-6, in a tail where D is 1e-5 of its "
 			"peak 4e-5)");

@@ -141,10 +141,11 @@ static enum status try_layout(const struct rgl_layout *layout, double (*value)[M
 }
 
 /* theta_i are half as many as half vectors along each side, since more of them would gain less. With axes, azimuths of wi over
- * half of the circle cost as much as theta_i, and both gain less. pbrt-v4 wants the whole circle. */
+ * half of the circle cost as much as theta_i, and both gain less. pbrt-v4 wants the whole circle, and so do tilted facets. */
 static struct rgl_layout layout_of(const struct export *export, size_t side, const char *description)
 {
-	const bool axes = export_has_axes(&export->model), half = export->format == EXPORT_BSDF_RGB;
+	const bool axes = export_has_axes(&export->model), tilted = ndf_is_tilted(&export->model.ndf);
+	const bool half = export->format == EXPORT_BSDF_RGB && !(axes && tilted);
 	const size_t n_phi = half ? side / 2 + 1 : side + 1;
 
 	return (struct rgl_layout){.description = description,

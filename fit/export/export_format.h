@@ -15,7 +15,7 @@ struct export_target {
 	/* Whether the model would be replaced; NULL: never. */
 	bool (*replaces)(const struct cook_torrance *model);
 	/* What the target makes of export->model in two directions above the horizon; NULL: cook_torrance_f(). */
-	void (*shows)(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo, double f[3]);
+	void (*shows)(const struct export *export, struct vec3 wi, struct vec3 wo, double f[3]);
 };
 
 extern const struct export_target export_brdf, export_merl, export_mitsuba, export_pbrt, export_gltf, export_json,

@@ -2,8 +2,8 @@
 /* glTF 2.0 with KHR_materials_ior and KHR_materials_specular. Its dielectric is no sum but a layer,
  *     f_c = (1 - max F) baseColor_c / pi + F_c D G / (4 cos_i cos_o),
  *     F_c = s (F0_c + (1 - F0_c) (1 - cos_d)^5),  F0_c = min(1, ((n-1)/(n+1))^2 specularColor_c),
- * D of GGX with sigma = roughness^2, G height-correlated. So every export with a lobe is approximate, and is fitted in these terms
- * [gltf_fit.h]. specularFactor s is 1 (0 without a lobe), since not every importer reads it; ks is specularColor.
+ * D of GGX with sigma = roughness^2, G height-correlated. So every export with a lobe is approximate, and is fitted in
+ * these terms [gltf_fit.h]. specularFactor s is 1 (0 without a lobe), since not every importer reads it; ks is specularColor.
  *
  * KHR_materials_anisotropy: along the tangent, turned counter-clockwise by anisotropyRotation, the roughness is
  * mix(sigma, 1, anisotropyStrength^2), the larger one; across it is sigma. */
@@ -50,34 +50,15 @@ static void set_material(struct cook_torrance *model, const struct gltf_material
 }
 
 /* What a viewer makes of the model. */
-static void gltf_f(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo, double f[3])
+static void gltf_f(const struct export *export, struct vec3 wi, struct vec3 wo, double f[3])
 {
-	const struct gltf_material material = material_of(model);
+	const struct gltf_material material = material_of(&export->model);
 	gltf_material_f(&material, wi, wo, f);
 }
 
 static bool is_gray(const double x[3])
 {
 	return x[0] == x[1] && x[1] == x[2];
-}
-
-/* The errors of the model and of what a viewer shows, under the weight of the fit first. */
-static enum status report_cost(struct export *export, const struct measurement *measurement,
-			       const struct gltf_material *material, struct error *error)
-{
-	const struct fit_options *fit = export->source.fit;
-	struct fit_metrics before;
-	double after[WEIGHT_COUNT];
-	const enum status status = fit_eval(measurement, export->source.model, fit, &before, error);
-	if (status != STATUS_OK)
-		return status;
-	for (enum weight weight = 0; weight < WEIGHT_COUNT; weight++) {
-		struct criterion criterion = fit->criterion;
-		criterion.weight = weight;
-		after[weight] = gltf_material_error(measurement, &criterion, fit->threads, material);
-	}
-	substitute_cost(export, before.error, after);
-	return STATUS_OK;
 }
 
 /* Fits the material in its own terms, from the model on. */
@@ -94,7 +75,7 @@ static enum status fit_material(struct export *export, const struct measurement 
 	if (material.specular)
 		set_material(&export->model, &material);
 	export->substitute = true;
-	return report_cost(export, measurement, &material, error);
+	return substitute_report(export, measurement, error);
 }
 
 static enum status gltf_prepare(struct export *export, struct error *error)
@@ -110,9 +91,7 @@ static enum status gltf_prepare(struct export *export, struct error *error)
 		return export_as_it_is(export, "the model itself");
 	if (!export->substitute)
 		snprintf(export->why, sizeof export->why, "approximate: glTF has no sum of two lobes");
-	const size_t used = strlen(export->why);
-	snprintf(export->why + used, sizeof export->why - used,
-		 "; its lobe takes what it reflects from the diffuse part, and was fitted like that");
+	substitute_add_why(export, "its lobe takes what it reflects from the diffuse part, and was fitted like that");
 	const struct measurement *measurement = substitute_measurement(&export->source, &own);
 	status = measurement ? fit_material(export, measurement, error)
 			     : error_set(error, STATUS_NO_MEMORY, "out of memory");
@@ -137,7 +116,8 @@ enum {
 	INDICES = MERIDIANS * (PARALLELS - 1) * 6,
 	INDEX_BYTES = INDICES * 2,
 	VERTEX_BYTES = VERTICES * 3 * 4,
-	TANGENT_BYTES = VERTICES * 4 * 4
+	TANGENT_BYTES = VERTICES * 4 * 4,
+	COORDINATE_BYTES = VERTICES * 2 * 4
 };
 
 /* Base64, of bytes that come one at a time. */
@@ -173,7 +153,7 @@ static void put_float(struct base64 *to, double value)
 		put_byte(to, bits >> shift & 255);
 }
 
-/* To the right along the parallels; the bitangent points to the upper pole. Padded with zeros to base64's 3 bytes. */
+/* To the right along the parallels; the bitangent points to the upper pole. */
 static void put_tangents(struct base64 *to)
 {
 	for (int n = 0; n < VERTICES; n++) {
@@ -183,6 +163,16 @@ static void put_tangents(struct base64 *to)
 		put_float(to, 0);
 		put_float(to, -sin(phi));
 		put_float(to, 1);
+	}
+}
+
+/* Of a texture, to the right and down, so that tangents that are derived from it are those above. Padded with zeros to
+ * base64's 3 bytes. */
+static void put_coordinates(struct base64 *to)
+{
+	for (int n = 0; n < VERTICES; n++) {
+		put_float(to, (double)(n % (MERIDIANS + 1)) / MERIDIANS);
+		put_float(to, (double)(n / (MERIDIANS + 1)) / PARALLELS);
 	}
 	while (to->n % 3)
 		put_byte(to, 0);
@@ -212,13 +202,24 @@ static void write_sphere(FILE *file, bool tangents)
 		put_float(&to, cos(theta));
 		put_float(&to, sin(theta) * cos(phi));
 	}
-	if (tangents)
+	if (tangents) {
 		put_tangents(&to);
+		put_coordinates(&to);
+	}
+}
+
+/* One texel of a normal texture. A viewer may take no tangents without one. */
+static void write_texture(FILE *file)
+{
+	fputs("  \"images\": [{\"uri\": \"data:image/png;base64,"
+	      "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mNoaPgPAAODAgA+WCglAAAAAElFTkSuQmCC"
+	      "\"}],\n  \"textures\": [{\"source\": 0}],\n",
+	      file);
 }
 
 static void write_scene(FILE *file, bool tangents)
 {
-	const int bytes = INDEX_BYTES + VERTEX_BYTES + (tangents ? (TANGENT_BYTES + 2) / 3 * 3 : 0);
+	const int bytes = INDEX_BYTES + VERTEX_BYTES + (tangents ? (TANGENT_BYTES + COORDINATE_BYTES + 2) / 3 * 3 : 0);
 
 	fprintf(file,
 		"  \"scene\": 0,\n  \"scenes\": [{\"nodes\": [0, 1, 2]}],\n  \"nodes\": [\n"
@@ -233,7 +234,7 @@ static void write_scene(FILE *file, bool tangents)
 		"\"intensity\": 3}]}},\n"
 		"  \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 1, \"NORMAL\": 1%s}, \"indices\": 0, "
 		"\"material\": 0}]}],\n",
-		tangents ? ", \"TANGENT\": 2" : "");
+		tangents ? ", \"TANGENT\": 2, \"TEXCOORD_0\": 3" : "");
 	fprintf(file,
 		"  \"accessors\": [\n"
 		"    {\"bufferView\": 0, \"componentType\": 5123, \"count\": %d, \"type\": \"SCALAR\"},\n"
@@ -242,16 +243,21 @@ static void write_scene(FILE *file, bool tangents)
 		"\"max\": [1, 1, 1]}",
 		INDICES, VERTICES);
 	if (tangents)
-		fprintf(file, ",\n    {\"bufferView\": 2, \"componentType\": 5126, \"count\": %d, \"type\": \"VEC4\"}",
-			VERTICES);
+		fprintf(file,
+			",\n    {\"bufferView\": 2, \"componentType\": 5126, \"count\": %d, \"type\": \"VEC4\"},\n"
+			"    {\"bufferView\": 3, \"componentType\": 5126, \"count\": %d, \"type\": \"VEC2\"}",
+			VERTICES, VERTICES);
 	fprintf(file,
 		"\n  ],\n  \"bufferViews\": [\n"
 		"    {\"buffer\": 0, \"byteLength\": %d, \"target\": 34963},\n"
 		"    {\"buffer\": 0, \"byteOffset\": %d, \"byteLength\": %d, \"target\": 34962}",
 		INDEX_BYTES, INDEX_BYTES, VERTEX_BYTES);
 	if (tangents)
-		fprintf(file, ",\n    {\"buffer\": 0, \"byteOffset\": %d, \"byteLength\": %d, \"target\": 34962}",
-			INDEX_BYTES + VERTEX_BYTES, TANGENT_BYTES);
+		fprintf(file,
+			",\n    {\"buffer\": 0, \"byteOffset\": %d, \"byteLength\": %d, \"target\": 34962},\n"
+			"    {\"buffer\": 0, \"byteOffset\": %d, \"byteLength\": %d, \"target\": 34962}",
+			INDEX_BYTES + VERTEX_BYTES, TANGENT_BYTES, INDEX_BYTES + VERTEX_BYTES + TANGENT_BYTES,
+			COORDINATE_BYTES);
 	fprintf(file, "\n  ],\n  \"buffers\": [{\"byteLength\": %d, \"uri\": \"data:application/octet-stream;base64,",
 		bytes);
 	write_sphere(file, tangents);
@@ -296,6 +302,8 @@ static enum status gltf_write(const struct export *export, FILE *file, struct er
 	write_rgb(file, model->kd, 1);
 	fprintf(file, ", 1],\n        \"metallicFactor\": 0,\n        \"roughnessFactor\": %s\n      },\n",
 		csv_number(text, lobe ? sqrt(fmin(model->ndf.sigma_x, model->ndf.sigma_y)) : 1));
+	if (axes) /* flat by its scale: no texel is just that */
+		fprintf(file, "      \"normalTexture\": {\"index\": 0, \"scale\": 0},\n");
 	fprintf(file, "      \"extensions\": {\n");
 	if (axes)
 		write_anisotropy(file, &model->ndf);
@@ -307,6 +315,8 @@ static enum status gltf_write(const struct export *export, FILE *file, struct er
 	const double scale = model->n > ior_max ? reflectance(model->n) / reflectance(ior_max) : 1;
 	write_rgb(file, model->ks, scale);
 	fprintf(file, "]\n        }\n      }\n    }\n  ],\n");
+	if (axes)
+		write_texture(file);
 	write_scene(file, axes);
 	return STATUS_OK;
 }

@@ -47,25 +47,57 @@ static void write_rgb(FILE *file, const char *name, const double rgb[3])
 	fputs("],\n", file);
 }
 
-static void write_nodes(FILE *file, const struct pwl *pwl)
-{
-	fputs("  \"nodes\": {\n    \"theta\": [", file);
-	for (int i = 0; i < pwl->n_nodes; i++) {
-		fputs(i ? ", " : "", file);
-		write_number(file, pwl->nodes[i].theta);
-	}
-	fputs("],\n    \"D\": [", file);
-	for (int i = 0; i < pwl->n_nodes; i++) {
-		fputs(i ? ", " : "", file);
-		write_number(file, pwl->nodes[i].Fx); /* D itself where the distribution is isotropic */
-	}
-	fputs("]\n  },\n", file);
-}
-
 static void write_parameter(FILE *file, const char *before, const char *name, double value)
 {
 	fprintf(file, "%s\"%s\": ", before, name);
 	write_number(file, value);
+}
+
+static double node_theta(const struct pwl_node *node)
+{
+	return node->theta;
+}
+
+/* D itself where the distribution is isotropic; else what is normalised again. */
+static double node_x(const struct pwl_node *node)
+{
+	return node->Fx;
+}
+
+static double node_y(const struct pwl_node *node)
+{
+	return node->Fy;
+}
+
+/* Where D of one axis plays no part, any will do that is not 0 at the normal. */
+static double node_any(const struct pwl_node *node)
+{
+	(void)node;
+	return 1;
+}
+
+static void write_array(FILE *file, const char *before, const struct pwl *pwl,
+			double (*value)(const struct pwl_node *node))
+{
+	fputs(before, file);
+	for (int i = 0; i < pwl->n_nodes; i++) {
+		fputs(i ? ", " : "", file);
+		write_number(file, value(&pwl->nodes[i]));
+	}
+	fputs("]", file);
+}
+
+static void write_nodes(FILE *file, const struct ndf *ndf)
+{
+	const struct pwl *pwl = ndf->pwl;
+	const struct pwl_node *last = &pwl->nodes[pwl->n_nodes - 1];
+	write_array(file, "  \"nodes\": {\n    \"theta\": [", pwl, node_theta);
+	write_array(file, ",\n    \"D\": [", pwl, last->mass_x > 0 ? node_x : node_any);
+	if (pwl->anisotropic) {
+		write_array(file, ",\n    \"Dy\": [", pwl, last->mass_y > 0 ? node_y : node_any);
+		write_parameter(file, ",\n    ", "angle", ndf->angle);
+	}
+	fputs("\n  },\n", file);
 }
 
 static void write_parameters(FILE *file, const struct ndf *ndf)
@@ -73,9 +105,13 @@ static void write_parameters(FILE *file, const struct ndf *ndf)
 	fputs("\"parameters\": {", file);
 	for (int i = 0; ndf_param_at(ndf->class, i); i++)
 		write_parameter(file, i ? ", " : "", ndf_param_at(ndf->class, i)->name, ndf->param[i]);
-	if (ndf->sigma_x != ndf->sigma_y) {
+	if (ndf_is_anisotropic(ndf)) {
 		write_parameter(file, ", ", "sigma_y", ndf->sigma_y);
 		write_parameter(file, ", ", "angle", ndf->angle);
+	}
+	if (ndf_is_tilted(ndf)) {
+		write_parameter(file, ", ", "tilt_x", ndf->tilt_x);
+		write_parameter(file, ", ", "tilt_y", ndf->tilt_y);
 	}
 	fputs("}", file);
 }
@@ -84,7 +120,7 @@ static void write_ndf(FILE *file, const struct ndf *ndf)
 {
 	fprintf(file, "  \"ndf\": \"%s\",\n", ndf_name(ndf->class));
 	if (ndf_is_tabulated(ndf->class)) {
-		write_nodes(file, ndf->pwl);
+		write_nodes(file, ndf);
 	} else {
 		fputs("  ", file);
 		write_parameters(file, ndf);

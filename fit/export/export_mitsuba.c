@@ -16,6 +16,7 @@ static const struct target target = {
 	.instead = FRESNEL_DIELECTRIC,
 	.sigma_min = 1e-4,
 	.blend = true,
+	.itself = "bsdf-rgb",
 };
 
 static enum status mitsuba_prepare(struct export *export, struct error *error)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/export/gltf_fit.h"
 #include "fit/error/entry_at.h"
-#include "fit/error/error_sum.h"
+#include "fit/export/shown_error.h"
 #include "src/cook_torrance.h"
 
 #include <stdlib.h>
@@ -36,39 +36,9 @@ void gltf_material_f(const struct gltf_material *material, struct vec3 wi, struc
 		f[c] = (1 - max_of(F)) * material->base[c] * M_1_PI + F[c] * lobe;
 }
 
-enum { PARTS = 90 }; /* each summed by one thread, in its order */
-
-/* Sums of part i of the entries: w |m - f| and w m. */
-static void add_part(const struct measurement *measurement, const struct criterion *criterion,
-		     const struct entries *entries, const struct gltf_material *material, size_t i, double sum[2])
+static void shown(const void *context, struct vec3 wi, struct vec3 wo, double f[3])
 {
-	const size_t n = measurement_count(measurement);
-	for (size_t at = i * n / PARTS; at < (i + 1) * n / PARTS; at++) {
-		struct entry_at entry;
-		double f[3];
-		if (!entry_at(measurement, entries, criterion, at, &entry))
-			continue;
-		gltf_material_f(material, entry.wi, entry.wo, f);
-		for (int c = 0; c < MERL_CHANNELS; c++) {
-			sum[0] += error_term(entry.weight, entry.value[c], f[c]);
-			sum[1] += entry.weight * entry.value[c];
-		}
-	}
-}
-
-double gltf_material_error(const struct measurement *measurement, const struct criterion *criterion, int threads,
-			   const struct gltf_material *material)
-{
-	const struct entries entries = entries_make(criterion->bins, measurement->n_phi_d);
-	double sum[PARTS][2] = {{0}}, difference = 0, all = 0;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-	for (size_t i = 0; i < PARTS; i++)
-		add_part(measurement, criterion, &entries, material, i, sum[i]);
-	for (size_t i = 0; i < PARTS; i++) {
-		difference += sum[i][0];
-		all += sum[i][1];
-	}
-	return error_ratio(difference, all);
+	gltf_material_f(context, wi, wo, f);
 }
 
 /* ---- The fit ---- */
@@ -243,8 +213,8 @@ enum status gltf_fit(const struct measurement *measurement, const struct criteri
 	search.small = weight > 0 ? 1e-4 * sum / weight : 1;
 	scan_roughness(&search);
 	free(search.point);
-	if (gltf_material_error(measurement, criterion, threads, &search.best) <
-	    gltf_material_error(measurement, criterion, threads, material))
+	if (shown_error(measurement, criterion, threads, shown, &search.best) <
+	    shown_error(measurement, criterion, threads, shown, material))
 		*material = search.best;
 	return STATUS_OK;
 }

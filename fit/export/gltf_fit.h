@@ -16,10 +16,6 @@ struct gltf_material {
 /* gltf_material_f - its values; wi, wo above the horizon. */
 void gltf_material_f(const struct gltf_material *material, struct vec3 wi, struct vec3 wo, double f[3]);
 
-/* gltf_material_error - E of the material under the criterion; NaN: no entry takes part. */
-double gltf_material_error(const struct measurement *measurement, const struct criterion *criterion, int threads,
-			   const struct gltf_material *material);
-
 /* gltf_fit - moves a material to where E under the criterion is small: the roughness, by one factor for both axes, by a scan
  * and golden sections; base and F0 for each of these by iterated weighted least squares, to which L1 is the limit; on 16 000 of
  * the entries. `gray`: one base and one F0 for all channels. The material stays as it is where E of all entries is not below that of

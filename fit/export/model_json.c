@@ -55,22 +55,26 @@ static enum status read_rgb(const json_t *json, const char *name, double rgb[3],
 static enum status read_nodes(const json_t *json, struct model_json *read, struct error *error)
 {
 	const json_t *nodes = json_object_get(json, "nodes");
-	size_t n = 0, n_D = 0;
+	const json_t *array_y = json_object_get(nodes, "Dy");
+	size_t n = 0, n_D = 0, n_Dy = 0;
 	double *theta = numbers_of(json_object_get(nodes, "theta"), &n),
-	       *D = numbers_of(json_object_get(nodes, "D"), &n_D);
+	       *D = numbers_of(json_object_get(nodes, "D"), &n_D), *Dy = numbers_of(array_y, &n_Dy);
 	enum status status = STATUS_DOMAIN;
 	read->pwl = calloc(1, sizeof *read->pwl);
 	if (!read->pwl)
 		status = STATUS_NO_MEMORY;
-	else if (theta && D && n == n_D && n <= PWL_NODES_MAX)
-		status = pwl_init(read->pwl, (int)n, theta, D, NULL);
+	else if (theta && D && n == n_D && n <= PWL_NODES_MAX && (!array_y || (Dy && n == n_Dy)))
+		status = pwl_init(read->pwl, (int)n, theta, D, Dy);
 	free(theta);
 	free(D);
+	free(Dy);
 	if (status == STATUS_NO_MEMORY)
 		return error_set(error, status, "out of memory");
 	if (status != STATUS_OK)
 		return bad("nodes", "two arrays, theta from 0 to pi/2 and D", error);
 	ndf_from_pwl(&read->model.ndf, read->pwl);
+	if (array_y && ndf_turn(&read->model.ndf, number_of(json_object_get(nodes, "angle"))) != STATUS_OK)
+		return bad("nodes", "with Dy an object with the angle in degrees, too", error);
 	return STATUS_OK;
 }
 
@@ -79,7 +83,11 @@ static enum status read_axes(const json_t *parameters, struct ndf *ndf)
 {
 	const double sigma_y = number_of(json_object_get(parameters, "sigma_y"));
 	const enum status status = ndf_init(ndf, ndf->class, ndf->sigma_x, sigma_y, ndf->gamma);
-	return status != STATUS_OK ? status : ndf_turn(ndf, number_of(json_object_get(parameters, "angle")));
+	if (status != STATUS_OK || ndf_turn(ndf, number_of(json_object_get(parameters, "angle"))) != STATUS_OK)
+		return STATUS_DOMAIN;
+	return json_object_get(parameters, "tilt_x") ? ndf_tilt(ndf, number_of(json_object_get(parameters, "tilt_x")),
+								number_of(json_object_get(parameters, "tilt_y")))
+						     : STATUS_OK;
 }
 
 static enum status read_parameters(const json_t *json, const struct ndf_class *class, struct ndf *ndf)

@@ -8,8 +8,10 @@
  *       "kd": [r, g, b], "ks": [r, g, b],        f_c = kd_c / pi + ks_c F D G / (4 cos_i cos_o)
  *       "ndf": "std",                            a name of ndf.h
  *       "parameters": {"sigma": s, ...},         as ndf_param_at() names them; infinity is "inf"
- *                                                anisotropic: sigma along the first axis, "sigma_y", "angle" in degrees, too
+ *                                                anisotropic: sigma along the first axis, "sigma_y", "angle" in degrees, too;
+ *                                                tilted: "tilt_x", "tilt_y" of ndf_tilt()
  *       "nodes": {"theta": [...], "D": [...]},   pl instead: D, 1/sr, linear in theta, radians, from 0 to pi/2
+ *                                                anisotropic: "Dy" and "angle", degrees, too, and D is along the first axis
  *       "lambda": "exact",                       a name of lambda_form.h
  *       "gaf": "uncorrelated", "fresnel": "dielectric", "ior": n, "k": k,     [r, g, b] where channels have their own
  *       "fitted": {"path": ..., "weight": ..., "bins": ..., "max_theta": ..., "error": E}     path and E may be null;

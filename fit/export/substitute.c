@@ -4,7 +4,7 @@
 #include "fit/error/model_samples.h"
 #include "fit/error/model_table.h"
 #include "fit/export/export_format.h"
-#include "fit/export/gray_specular.h"
+#include "fit/export/shown_error.h"
 
 #include <stdarg.h>
 #include <string.h>
@@ -61,8 +61,6 @@ bool substitute_needed(const struct target *target, const struct cook_torrance *
 		add_text(text, " no Fresnel term %s,", fresnel_name(model->fresnel));
 	if (model->per_channel_ior && !target->channel_ior)
 		add_text(text, " no index of its own for each channel,");
-	if (target->gray && !is_gray(model->ks))
-		add_text(text, " no ks of its own for each channel,");
 	const double sigma = fmax(model->ndf.sigma_x, model->ndf.sigma_y);
 	if (target->sigma_max > 0 && sigma / model->ndf.stretch > target->sigma_max)
 		add_text(text, " no roughness of %.5g,", sigma);
@@ -209,11 +207,6 @@ static enum status fit_blend(const struct fit_context *context, const struct mea
 	return status;
 }
 
-static void average_specular(struct cook_torrance *model)
-{
-	model->ks[0] = model->ks[1] = model->ks[2] = (model->ks[0] + model->ks[1] + model->ks[2]) / 3;
-}
-
 /* Fits the substitute into export->model. *blended: as a blend, which the best fit is not. */
 static enum status fit_substitute(struct export *export, const struct target *target,
 				  const struct measurement *measurement, bool *blended, struct error *error)
@@ -231,14 +224,9 @@ static enum status fit_substitute(struct export *export, const struct target *ta
 		fit.sigma_y = fit.anisotropic ? fmin(ndf->sigma_y, target->sigma_max) : NAN;
 		status = fit_once(context, measurement, &fit, &export->model, &value, error);
 	}
-	if (status == STATUS_OK && target->gray)
-		average_specular(&export->model);
 	*blended = status == STATUS_OK && target->blend && !fits_blend(&export->model);
 	if (*blended)
 		status = fit_blend(context, measurement, &fit, &export->model, error);
-	if (status == STATUS_OK && target->gray && fit.diffuse &&
-	    gray_specular(measurement, &fit, &export->model) != STATUS_OK)
-		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
 	fit_context_free(context);
 	return status;
 }
@@ -253,7 +241,7 @@ static void name_data(const struct export_source *source, char name[TEXT_QUOTE_S
 			 source->measurement ? "the measurement" : "a table of the model itself");
 }
 
-void substitute_cost(struct export *export, const double before[WEIGHT_COUNT], const double after[WEIGHT_COUNT])
+static void tell_cost(struct export *export, const double before[WEIGHT_COUNT], const double after[WEIGHT_COUNT])
 {
 	const enum weight fitted = export->source.weight;
 	const bool measured = export->source.measurement != NULL;
@@ -271,16 +259,26 @@ void substitute_cost(struct export *export, const double before[WEIGHT_COUNT], c
 	}
 }
 
-static enum status report_cost(struct export *export, const struct measurement *measurement, struct error *error)
+enum status substitute_report(struct export *export, const struct measurement *measurement, struct error *error)
 {
 	const struct fit_options *fit = export->source.fit;
-	struct fit_metrics before, after;
+	struct fit_metrics before, after = {.error = {0}};
 	enum status status = fit_eval(measurement, export->source.model, fit, &before, error);
-	if (status == STATUS_OK)
+	if (status == STATUS_OK && export_shows_model(export))
 		status = fit_eval(measurement, &export->model, fit, &after, error);
+	for (enum weight weight = 0; weight < WEIGHT_COUNT && !export_shows_model(export); weight++) {
+		struct criterion criterion = fit->criterion;
+		criterion.weight = weight;
+		after.error[weight] = shown_error(measurement, &criterion, fit->threads, export_shown_f, export);
+	}
 	if (status == STATUS_OK)
-		substitute_cost(export, before.error, after.error);
+		tell_cost(export, before.error, after.error);
 	return status;
+}
+
+void substitute_add_why(struct export *export, const char *text)
+{
+	add_text(export->why, "; %s", text);
 }
 
 /* Uses the model as it is, its distribution under the name that the target has for it. */
@@ -306,12 +304,6 @@ enum status substitute_prepare(struct export *export, const struct target *targe
 	const struct cook_torrance *given = export->source.model;
 	struct measurement own;
 	use_as_it_is(export);
-	if (target->gray && !is_gray(given->ks) && !(export_max(given->kd) > 0))
-		return error_set(
-			error, STATUS_UNSUPPORTED,
-			"%s has one ks for all channels, and without kd the colour of ks %.5g, %.5g, %.5g "
-			"would be lost (a fit with --gray --gaf correlated has one; --format bsdf has every model)",
-			target->name, given->ks[0], given->ks[1], given->ks[2]);
 	export->substitute = substitute_needed(target, given, lacks);
 	if (!export->substitute && target->blend && !fits_blend(given) && export_max(given->ks) > 0) {
 		export->substitute = true;
@@ -325,12 +317,14 @@ enum status substitute_prepare(struct export *export, const struct target *targe
 	enum status status = measurement ? fit_substitute(export, target, measurement, &blended, error)
 					 : error_set(error, STATUS_NO_MEMORY, "out of memory");
 	if (status == STATUS_OK)
-		status = report_cost(export, measurement, error);
+		status = substitute_report(export, measurement, error);
 	measurement_free(&own);
 	if (status == STATUS_OK)
 		status = check_sigma(export, target, error);
 	snprintf(export->why, sizeof export->why, "approximate: %s has%.200s; %s%s was fitted in its place%s",
 		 target->name, lacks, ndf_name(export->model.ndf.class),
 		 is_beckmann(&export->model.ndf) ? "" : " (gamma 2)", blended ? ", with kd + ks up to 1" : "");
+	if (target->itself)
+		add_text(export->why, " (format %s has the model itself)", target->itself);
 	return status;
 }

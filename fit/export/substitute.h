@@ -15,7 +15,7 @@ struct target {
 	double sigma_min;     /* smaller roughness counts as a mirror */
 	double sigma_max;     /* larger one cannot be said; 0: any can */
 	bool blend;           /* adds up two lobes by weights, so that kd + ks may not exceed 1 */
-	bool gray;            /* one ks for all channels */
+	const char *itself;   /* the format of ours that shows every model there; NULL: none */
 	bool channel_ior;     /* takes a conductor's index for each channel */
 };
 
@@ -29,7 +29,12 @@ MUST_CHECK enum status substitute_prepare(struct export *export, const struct ta
  * *own, to be freed by the caller; NULL and no memory otherwise. */
 const struct measurement *substitute_measurement(const struct export_source *source, struct measurement *own);
 
-/* substitute_cost - export->cost from the errors of the model and of its substitute under each weight. */
-void substitute_cost(struct export *export, const double before[WEIGHT_COUNT], const double after[WEIGHT_COUNT]);
+/* substitute_report - export->cost: the errors of the model, and of what the target shows of export->model, under each
+ * weight. Errors as fit_eval(). */
+MUST_CHECK enum status substitute_report(struct export *export, const struct measurement *measurement,
+					 struct error *error);
+
+/* substitute_add_why - adds "; " and the text to export->why. */
+void substitute_add_why(struct export *export, const char *text);
 
 #endif

@@ -2,6 +2,7 @@
 #include "fit/page/page.h"
 #include "fit/page/html.h"
 #include "fit/page/page_style.h"
+#include "fit/results/interval_text.h"
 #include "fit/sources/row_options.h"
 
 #include <gsl/gsl_statistics_double.h>
@@ -20,13 +21,18 @@ static void put_shown(FILE *page, double x)
 		fprintf(page, fabs(x) < 1e15 && x == rint(x) ? "%.0f" : "%.5g", x);
 }
 
-/* A table cell that sorts by its exact value. */
-static void put_number(FILE *page, double x, bool best)
+/* A table cell that sorts by its exact value, not yet ended. */
+static void begin_number(FILE *page, double x, bool best)
 {
 	char text[CSV_NUMBER_SIZE];
 	fprintf(page, "<td class=\"n%s\" data-v=\"%s\">", best ? " best" : "",
 		isinf(x) ? "Infinity" : csv_number(text, x));
 	put_shown(page, x);
+}
+
+static void put_number(FILE *page, double x, bool best)
+{
+	begin_number(page, x, best);
 	fputs("</td>", page);
 }
 
@@ -142,7 +148,7 @@ static void put_top(FILE *page, const char *name, size_t n)
 	put_title(page, name, n);
 	fprintf(page, "</title>\n<style>\n%s</style>\n</head>\n<body>\n<main>\n<h1>Fits of ", page_style);
 	put_title(page, name, n);
-	fputs("</h1>\n<p>Cook-Torrance models, a diffuse term and one microfacet lobe, fitted to measured BRDFs. The "
+	fputs("</h1>\n<p>Cook-Torrance models, diffuse terms and microfacet lobes, fitted to measured BRDFs. The "
 	      "error "
 	      "E is the sum of |measured \xe2\x88\x92 model| over that of measured, 0 for a perfect model and 1 for a "
 	      "black "
@@ -207,6 +213,8 @@ static void put_material_row(FILE *page, const struct error_grid *grid, const st
 		line->material->file_name);
 	html_text(page, line->material->name);
 	fputs("</a></th>", page);
+	if (grid->weights)
+		put_text_cell(page, line->material->row[0][RESULT_WEIGHT], false);
 	put_text_cell(page, best ? grid->ndf[line->best] : "", false);
 	for (int n = 0; n < grid->n_ndf; n++)
 		put_number(page, line->error[n], n == line->best);
@@ -224,6 +232,8 @@ static void put_materials(FILE *page, const struct error_grid *grid, bool divide
 	      page);
 	begin_table(page, "sortable", "Materials", NULL);
 	put_head(page, "material", "", true);
+	if (grid->weights)
+		put_head(page, "weight", "", false);
 	put_head(page, "best", "", false);
 	for (int n = 0; n < grid->n_ndf; n++) {
 		char head[ERROR_GRID_LABEL + 8], label[ERROR_GRID_LABEL];
@@ -245,7 +255,7 @@ enum status page_begin(struct page *page, FILE *file, const struct materials *ma
 	*page = (struct page){.file = file, .materials = materials, .divided = materials->n > PAGE_MATERIALS_MAX};
 	if (error_grid_make(materials, &page->grid) != STATUS_OK)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	put_top(file, materials->n == 1 ? materials->material[0].name : NULL, materials->n);
+	put_top(file, materials->n_distinct == 1 ? materials->material[0].name : NULL, materials->n_distinct);
 	if (put_summary(file, &page->grid) != STATUS_OK)
 		return error_set(error, STATUS_NO_MEMORY, "out of memory");
 	const enum status status = put_picture(file, NULL, errors, error);
@@ -261,7 +271,7 @@ void page_of_material(const struct page *page, size_t m, FILE *file, struct page
 	*own = *page;
 	own->file = file;
 	put_top(file, page->materials->material[m].name, 1);
-	fprintf(file, "<p><a href=\"../index.html\">All %zu materials</a></p>\n", page->materials->n);
+	fprintf(file, "<p><a href=\"../index.html\">All %zu materials</a></p>\n", page->materials->n_distinct);
 }
 
 /* One material */
@@ -269,12 +279,47 @@ void page_of_material(const struct page *page, size_t m, FILE *file, struct page
 static const struct {
 	enum result_column column;
 	const char *name;
+	enum interval_parameter interval; /* INTERVAL_PARAMETERS: it has none */
+	bool always;                      /* else only where a fit of the material has it */
 } parameters[] = {
-	{RESULT_ERROR, "E"},   {RESULT_SIGMA, "\xcf\x83"}, {RESULT_GAMMA, "\xce\xb3"}, {RESULT_IOR, "n"},
-	{RESULT_KD_R, "kd r"}, {RESULT_KD_G, "g"},         {RESULT_KD_B, "b"},         {RESULT_KS_R, "ks r"},
-	{RESULT_KS_G, "g"},    {RESULT_KS_B, "b"},
+	{RESULT_ERROR, "E", INTERVAL_PARAMETERS, true},
+	{RESULT_SIGMA, "\xcf\x83", INTERVAL_SIGMA, true},
+	{RESULT_SIGMA_X, "\xcf\x83 x", INTERVAL_PARAMETERS, false},
+	{RESULT_SIGMA_Y, "\xcf\x83 y", INTERVAL_PARAMETERS, false},
+	{RESULT_ANGLE, "angle", INTERVAL_PARAMETERS, false},
+	{RESULT_GAMMA, "\xce\xb3", INTERVAL_GAMMA, true},
+	{RESULT_IOR, "n", INTERVAL_IOR, true},
+	{RESULT_F0_R, "F0 r", INTERVAL_PARAMETERS, false},
+	{RESULT_F0_G, "g", INTERVAL_PARAMETERS, false},
+	{RESULT_F0_B, "b", INTERVAL_PARAMETERS, false},
+	{RESULT_F82_R, "F82 r", INTERVAL_PARAMETERS, false},
+	{RESULT_F82_G, "g", INTERVAL_PARAMETERS, false},
+	{RESULT_F82_B, "b", INTERVAL_PARAMETERS, false},
+	{RESULT_F90_R, "F90 r", INTERVAL_PARAMETERS, false},
+	{RESULT_F90_G, "g", INTERVAL_PARAMETERS, false},
+	{RESULT_F90_B, "b", INTERVAL_PARAMETERS, false},
+	{RESULT_KD_R, "kd r", INTERVAL_PARAMETERS, true},
+	{RESULT_KD_G, "g", INTERVAL_PARAMETERS, true},
+	{RESULT_KD_B, "b", INTERVAL_PARAMETERS, true},
+	{RESULT_KG_R, "kg r", INTERVAL_PARAMETERS, false},
+	{RESULT_KG_G, "g", INTERVAL_PARAMETERS, false},
+	{RESULT_KG_B, "b", INTERVAL_PARAMETERS, false},
+	{RESULT_EXPONENT, "exponent", INTERVAL_EXPONENT, false},
+	{RESULT_KS_R, "ks r", INTERVAL_PARAMETERS, true},
+	{RESULT_KS_G, "g", INTERVAL_PARAMETERS, true},
+	{RESULT_KS_B, "b", INTERVAL_PARAMETERS, true},
+	{RESULT_KS2_R, "ks2 r", INTERVAL_PARAMETERS, false},
+	{RESULT_KS2_G, "g", INTERVAL_PARAMETERS, false},
+	{RESULT_KS2_B, "b", INTERVAL_PARAMETERS, false},
+	{RESULT_SIGMA2, "\xcf\x83 2", INTERVAL_SIGMA2, false},
+	{RESULT_GAMMA2, "\xce\xb3 2", INTERVAL_GAMMA2, false},
 };
 enum { PARAMETERS = sizeof parameters / sizeof *parameters };
+
+static bool is_interval(enum result_column column)
+{
+	return column >= RESULT_SIGMA_LO && column <= RESULT_OTHER_BINS;
+}
 
 /* What is shown elsewhere, or is the same for all rows of a material. */
 static bool is_certainty(enum result_column column)
@@ -283,6 +328,8 @@ static bool is_certainty(enum result_column column)
 						       RESULT_FRESNEL,   RESULT_LAMBDA,  RESULT_WEIGHT,  RESULT_BINS,
 						       RESULT_MAX_THETA, RESULT_PATH,    RESULT_INPUT,   RESULT_OPTIONS,
 						       RESULT_VERSION,   RESULT_SECONDS, RESULT_SUSPECTS};
+	if (is_interval(column))
+		return false;
 	for (int p = 0; p < PARAMETERS; p++)
 		if (parameters[p].column == column)
 			return false;
@@ -315,28 +362,84 @@ static void begin_parameters_row(FILE *page, char *const *row)
 	fputs("</th>", page);
 }
 
-static void put_parameters(FILE *page, const struct material *material)
+static bool has_cell(const struct material *material, enum result_column column)
+{
+	for (size_t r = 0; r < material->n_rows; r++)
+		if (*material->row[r][column])
+			return true;
+	return false;
+}
+
+static bool is_shown(const struct material *material, int p)
+{
+	return parameters[p].always || has_cell(material, parameters[p].column);
+}
+
+/* A parameter's value, below it where else it may lie. */
+static void put_parameter(FILE *page, char *const *row, int p)
+{
+	char text[INTERVAL_TEXT_SIZE] = "";
+	if (parameters[p].interval < INTERVAL_PARAMETERS)
+		interval_text(text, row, parameters[p].interval);
+	begin_number(page, result_number(row, parameters[p].column), false);
+	if (*text) {
+		fputs("<span class=\"range\">", page);
+		html_text(page, text);
+		fputs("</span>", page);
+	}
+	fputs("</td>", page);
+}
+
+/* What has no column of its own; of k its interval is told here, too. */
+static void put_further(FILE *page, char *const *row)
 {
 	enum { SHORT_PARAMS = 120 };
+	char text[SHORT_PARAMS + INTERVAL_TEXT_SIZE + 16], k[INTERVAL_TEXT_SIZE];
+	const bool is_short = strlen(row[RESULT_PARAMS]) <= SHORT_PARAMS, has_k = *interval_text(k, row, INTERVAL_K);
+	snprintf(text, sizeof text, "%s%s%s%s", is_short ? row[RESULT_PARAMS] : "the values of D: see the result table",
+		 has_k ? " (k " : "", k, has_k ? ")" : "");
+	put_text_cell(page, text, true);
+}
+
+static void put_other_bins(FILE *page, char *const *row)
+{
+	char moves[OTHER_BINS_SIZE];
+	if (!*other_bins_text(moves, row))
+		return;
+	fputs("<p>", page);
+	html_text(page, row[RESULT_NDF]);
+	fputs(" with entries at the centres of the bins: ", page);
+	html_text(page, moves);
+	fputs(".</p>\n", page);
+}
+
+static void put_parameters(FILE *page, const struct material *material)
+{
 	fputs("<h4>Parameters</h4>\n", page);
 	begin_table(page, "parameters", "Parameters", material->file_name);
 	put_head(page, "NDF", "", false);
 	for (int p = 0; p < PARAMETERS; p++)
-		put_head(page, parameters[p].name, "n", false);
+		if (is_shown(material, p))
+			put_head(page, parameters[p].name, "n", false);
 	put_head(page, "further", "long", false);
 	fputs("</tr></thead><tbody>\n", page);
 	for (size_t r = 0; r < material->n_rows; r++) {
 		char *const *row = material->row[r];
 		begin_parameters_row(page, row);
 		for (int p = 0; p < PARAMETERS; p++)
-			put_number(page, result_number(row, parameters[p].column), false);
-		put_text_cell(page,
-			      strlen(row[RESULT_PARAMS]) <= SHORT_PARAMS ? row[RESULT_PARAMS]
-									 : "the values of D: see the result table",
-			      true);
+			if (is_shown(material, p))
+				put_parameter(page, row, p);
+		put_further(page, row);
 		fputs("</tr>\n", page);
 	}
 	end_table(page);
+	if (has_cell(material, RESULT_SIGMA_LO) || has_cell(material, RESULT_IOR_LO))
+		fputs("<p class=\"soft\">Below a value: where it may lie, the other parameters refitted, while E stays "
+		      "within the per cent that --intervals names among the options; &lt;= and &gt;= are ends of the "
+		      "domain.</p>\n",
+		      page);
+	for (size_t r = 0; r < material->n_rows; r++)
+		put_other_bins(page, material->row[r]);
 }
 
 /* All else that the result table says of each fit, a line a fit. Columns that are empty for all are left out. */
@@ -344,8 +447,7 @@ static void put_certainty(FILE *page, const struct material *material)
 {
 	bool shown[RESULT_COLUMNS] = {false};
 	for (enum result_column c = 0; c < RESULT_COLUMNS; c++)
-		for (size_t r = 0; r < material->n_rows && is_certainty(c); r++)
-			shown[c] |= *material->row[r][c] != '\0';
+		shown[c] = is_certainty(c) && has_cell(material, c);
 	fputs("<h4>How sure, and how near</h4>\n", page);
 	begin_table(page, "certainty", "Certainty and other errors", material->file_name);
 	put_head(page, "NDF", "", false);

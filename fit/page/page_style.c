@@ -25,6 +25,7 @@ const char page_style[] =
 	"thead th{background:var(--shade);vertical-align:bottom}\n"
 	"th.n,td.n{text-align:right}\n"
 	"td.best{font-weight:700}\n"
+	".range{display:block;font-size:.8rem;color:var(--soft)}\n"
 	"td.long,th.long{white-space:normal;overflow-wrap:anywhere;min-width:10rem}\n"
 	"th button{all:unset;cursor:pointer;color:var(--link);font-weight:700}\n"
 	"th button:focus-visible{outline:2px solid var(--link);outline-offset:2px}\n"

@@ -5,6 +5,7 @@
 #include "fit/error/weighted_median.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Bounds of what counts, see measured_ndf.h. */
 enum { THETA_D_MAX = 30, TAIL_NODES = 40 };
@@ -13,39 +14,56 @@ static const double steepest = 80 * M_PI / 180;
 struct reading {
 	const struct measurement *measurement;
 	const struct cook_torrance *model;
+	struct cook_torrance without; /* the same without the lobe whose D is read */
 	struct entries entries;
 	struct masking masking;
 	struct weighted_value *value; /* room for one theta_h */
 	double min_cos;
 };
 
-/* What a unit of D, of ks and of F adds to the model. */
-static double lobe_per_D(const struct reading *r, struct vec3 wi, struct vec3 wo)
+/* What a unit of D and of ks adds to the model. */
+static double lobe_per_D(const struct reading *r, struct vec3 wi, struct vec3 wo, double F)
 {
 	const struct cook_torrance *model = r->model;
 	const double cosines = wi.z * wo.z;
 
 	if (model->gaf == GAF_V_GROOVE)
-		return cook_torrance_from_G(1, gaf_G(GAF_V_GROOVE, &model->ndf, wi, wo), cosines);
-	return cook_torrance_from_G1(model->gaf, 1, masking_at(&r->masking, masking_q(wi)),
+		return cook_torrance_from_G(F, gaf_G(GAF_V_GROOVE, &model->ndf, wi, wo), cosines);
+	return cook_torrance_from_G1(model->gaf, F, masking_at(&r->masking, masking_q(wi)),
 				     masking_at(&r->masking, masking_q(wo)), cosines);
 }
 
+/* What the model has beside the lobe. */
+static void other_terms(const struct reading *r, struct vec3 wi, struct vec3 wo, double rest[MERL_CHANNELS])
+{
+	if (cook_torrance_has_second(&r->without) || cook_torrance_has_grazing(&r->without)) {
+		cook_torrance_f(&r->without, wi, wo, rest);
+		return;
+	}
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		rest[c] = r->without.kd[c] / M_PI;
+}
+
 /* The values of D that entry (i, j, k) gives, one per channel; returns how many. */
-static size_t entry_values(const struct reading *r, int i, int j, int k, const double F[], struct weighted_value *asked)
+static size_t entry_values(const struct reading *r, int i, int j, int k, const double F[MERL_CHANNELS],
+			   struct weighted_value *asked)
 {
 	const struct measurement *measurement = r->measurement;
 	const size_t at = measurement_at(measurement->n_phi_d, i, j, k);
+	double rest[MERL_CHANNELS];
 	struct vec3 wi, wo;
 	size_t n = 0;
 
 	entries_dirs(&r->entries, i, j, k, &wi, &wo);
 	if (wi.z < r->min_cos || wo.z < r->min_cos || isnan(measurement->value[0][at]))
 		return 0;
-	const double lobe = lobe_per_D(r, wi, wo);
+	other_terms(r, wi, wo, rest);
+	double lobe = 0;
 	for (int c = 0; c < MERL_CHANNELS; c++) {
-		const double per_D = r->model->ks[c] * (lobe * F[c]);
-		const double wanted = (double)measurement->value[c][at] - r->model->kd[c] / M_PI;
+		if (c == 0 || F[c] != F[0])
+			lobe = lobe_per_D(r, wi, wo, F[c]);
+		const double per_D = r->model->ks[c] * lobe;
+		const double wanted = (double)measurement->value[c][at] - rest[c];
 
 		if (per_D > 0)
 			asked[n++] = (struct weighted_value){(float)(wanted / per_D), (float)per_D};
@@ -62,7 +80,6 @@ static double read_row(const struct reading *r, int i)
 
 		for (int c = 0; c < MERL_CHANNELS; c++)
 			F[c] = cook_torrance_F(r->model, c, r->entries.theta[j].cos_d);
-
 		for (int k = 0; k < r->measurement->n_phi_d; k++)
 			n += entry_values(r, i, j, k, F, r->value + n);
 	}
@@ -74,11 +91,13 @@ static enum status read_rows(const struct measurement *measurement, const struct
 {
 	struct reading r = {.measurement = measurement,
 			    .model = model,
+			    .without = *model,
 			    .entries = entries_make(bins, measurement->n_phi_d),
 			    .min_cos = cos(steepest)};
 	const size_t n_max = (size_t)(THETA_D_MAX + 1) * (size_t)measurement->n_phi_d * MERL_CHANNELS;
 	const int32_t q_min = masking_q((struct vec3){sin(steepest), 0, cos(steepest)}) - 1;
 
+	memset(r.without.ks, 0, sizeof r.without.ks);
 	r.value = malloc(n_max * sizeof *r.value);
 	const enum status status = r.value ? masking_init(&r.masking, q_min, MASKING_FINE) : STATUS_NO_MEMORY;
 	if (status == STATUS_OK && model->gaf != GAF_V_GROOVE)

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* measured_ndf - the NDF read off a table with the help of a fit.
  *
- * With kd, ks, n and G of the fit held fixed, each entry gives one D(theta_h): the one with which the model equals the measurement there,
- * D = (m - kd/pi) 4 cos_i cos_o / (ks F G). For each theta_h the D that minimises the sum of |m - f| is used: the
- * median of these values, weighted by what a unit of D adds to f. Only entries with theta_d <= 30 degrees count, where F is
- * all but constant and G the same for wi and wo, and with theta_i, theta_o <= 80 degrees, where measurements can be
+ * With kd, ks, n and G of the fit held fixed, each entry gives one D(theta_h): the one with which the model equals the
+ * measurement there, D = (m - kd/pi - r) 4 cos_i cos_o / (ks F G), r being what a grazing term and a second lobe add. For each
+ * theta_h the D that minimises the sum of |m - f| is used: the median of these values, weighted by what a unit of D adds to f.
+ * Only entries with theta_d <= 30 degrees count, where F is all but constant and G the same for wi and wo, and with theta_i,
+ * theta_o <= 80 degrees, where measurements can be
  * trusted. A cheap estimate: the free form `pl` (free_form.h) has kd, ks, n and G follow D as well. */
 #ifndef MEASURED_NDF_H
 #define MEASURED_NDF_H

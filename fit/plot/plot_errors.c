@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "data_readers/text_quote.h"
 #include "fit/plot/gnuplot.h"
 #include "fit/plot/plot_common.h"
 #include "fit/plot/plot_files.h"
@@ -7,6 +8,17 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Of several weights a material has a place under each: their errors are different measures. */
+static void put_name(FILE *file, const struct error_grid *grid, const struct material *material)
+{
+	char name[TEXT_QUOTE_SIZE + 32], shown[TEXT_QUOTE_SIZE];
+	if (grid->weights) {
+		text_quote(material->name, shown, sizeof shown);
+		snprintf(name, sizeof name, "%s, %.20s", shown, material->row[0][RESULT_WEIGHT]);
+	}
+	plot_text(file, grid->weights ? name : material->name);
+}
 
 static enum status write_errors(const char *directory, const struct error_grid *grid, struct error *error)
 {
@@ -22,7 +34,7 @@ static enum status write_errors(const char *directory, const struct error_grid *
 	}
 	fputc('\n', file.stream);
 	for (size_t m = 0; m < grid->n_fitted; m++) {
-		plot_text(file.stream, grid->line[m].material->name);
+		put_name(file.stream, grid, grid->line[m].material);
 		for (int n = 0; n < grid->n_ndf; n++)
 			plot_number(file.stream, grid->line[m].error[n]);
 		fputc('\n', file.stream);
@@ -52,7 +64,7 @@ static enum status write_errors_script(const char *directory, const struct error
 	fprintf(file.stream,
 		"set title \"error of the fits, %zu material%s in order of %s\"\nset ylabel \"error E\"\n"
 		"set xrange [-0.5:%g]\nset yrange [0:*]\nset key outside top center horizontal\n",
-		grid->n_fitted, grid->n_fitted == 1 ? "" : "s", grid->by_std ? "that of std" : "their lowest",
+		grid->n_distinct, grid->n_distinct == 1 ? "" : "s", grid->by_std ? "that of std" : "their lowest",
 		(double)grid->n_fitted - 0.5);
 	fprintf(file.stream, "set xtics rotate by 60 right noenhanced scale 0.5\n%s",
 		grid->n_fitted > LABELS_MOST ? "unset xtics\nset xlabel \"materials\"\n" : "");

@@ -15,8 +15,11 @@ enum {
 enum status glass_init(struct glass *glass, const struct ndf *ndf, enum gaf gaf, double n, bool multiple,
 		       enum sampling sampling)
 {
+	struct sampler sampler;
 	glass->multiple = multiple;
-	glass->sampling = vndf_supports(ndf) ? sampling : SAMPLING_NDF;
+	glass->sampling = sampling;
+	if (sampler_init(&sampler, ndf, sampling) != STATUS_OK)
+		glass->sampling = vndf_supports(ndf) ? SAMPLING_VISIBLE : SAMPLING_NDF;
 	const enum status status = dielectric_init(&glass->dielectric, ndf, gaf, n);
 	if (status != STATUS_OK || !multiple)
 		return status;

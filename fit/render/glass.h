@@ -17,9 +17,9 @@ struct glass {
 	enum sampling sampling;       /* of single scattering */
 };
 
-/* glass_init - n: index of the glass, that of its surroundings being 1. SAMPLING_VISIBLE becomes SAMPLING_NDF where the NDF
- * has no sampler of visible normals. Returns: as dielectric_init(); with `multiple` as random_walk_init_dielectric(), and gaf
- * does not matter but for GAF_V_GROOVE, STATUS_UNSUPPORTED. */
+/* glass_init - n: index of the glass, that of its surroundings being 1. Where the NDF has no such sampler, SAMPLING_VISIBLE
+ * takes its place, or else SAMPLING_NDF. Returns: as dielectric_init(); with `multiple` as random_walk_init_dielectric(), and
+ * gaf does not matter but for GAF_V_GROOVE, STATUS_UNSUPPORTED. */
 MUST_CHECK enum status glass_init(struct glass *glass, const struct ndf *ndf, enum gaf gaf, double n, bool multiple,
 				  enum sampling sampling);
 

@@ -27,7 +27,7 @@ static bool any_has_axes(const struct pictures_model *model, int n)
 {
 	bool any = false;
 	for (int i = 0; i < n; i++)
-		any |= model[i].model->ndf.sigma_x != model[i].model->ndf.sigma_y;
+		any |= ndf_is_anisotropic(&model[i].model->ndf);
 	return any;
 }
 
@@ -72,6 +72,6 @@ enum status pictures_render_model(const struct cook_torrance *model, enum sampli
 				  struct sphere *sphere)
 {
 	struct sphere_options with_axes = *options;
-	with_axes.tangents = model->ndf.sigma_x != model->ndf.sigma_y;
+	with_axes.tangents = ndf_is_anisotropic(&model->ndf);
 	return render(model, NULL, sampling, environment, &with_axes, sphere);
 }

@@ -14,14 +14,23 @@ static enum status lobe_init(struct surface_lobe *lobe, const struct ndf *ndf, e
 	enum sampling used = sampling;
 	if (sampler_init(&lobe->sampler, ndf, used) != STATUS_OK)
 		used = vndf_supports(ndf) ? SAMPLING_VISIBLE : SAMPLING_NDF;
-	lobe->own = used == SAMPLING_VISIBLE || used == SAMPLING_NDF;
+	/* The density of those visible has no G1 where that is bounded. */
+	lobe->own = (used == SAMPLING_VISIBLE && !ndf_is_tilted(ndf)) || used == SAMPLING_NDF;
 	if (used != sampling && sampler_init(&lobe->sampler, ndf, used) != STATUS_OK)
 		return STATUS_UNSUPPORTED;
+	lobe->turns = ndf_is_anisotropic(ndf);
+	if (lobe->turns)
+		return STATUS_OK;
 	const struct vec3 lowest = {sqrt(1 - SURFACE_HORIZON * SURFACE_HORIZON), 0, SURFACE_HORIZON};
 	const enum status status = masking_init(&lobe->masking, masking_q(lowest) - 1, MASKING_FINE);
 	if (status == STATUS_OK)
 		masking_fill(&lobe->masking, ndf);
 	return status;
+}
+
+static double G1_at(const struct surface_lobe *lobe, struct vec3 w)
+{
+	return lobe->turns ? ndf_G1(lobe->ndf, w) : masking_at(&lobe->masking, masking_q(w));
 }
 
 enum status surface_init(struct surface *s, const struct cook_torrance *model, const struct measured *measured,
@@ -72,7 +81,7 @@ struct view surface_view(const struct surface *s, struct vec3 wo)
 		const struct ndf *ndf = s->lobe[l].ndf;
 		if (!ndf)
 			continue;
-		view.lobe[l].G1 = masking_at(&s->lobe[l].masking, masking_q(wo));
+		view.lobe[l].G1 = G1_at(&s->lobe[l], wo);
 		view.lobe[l].G1_exact =
 			ndf->lambda_form == LAMBDA_EXACT ? view.lobe[l].G1 : ndf_G1(&s->lobe[l].sampler.proposal, wo);
 		lobe[l] = reflected(model, l ? model->ks_second : model->ks, wo.z);
@@ -96,7 +105,7 @@ static double facets_f(const struct surface *s, const struct view *view, int l, 
 	const double cosines = wi.z * view->wo.z;
 	if (gaf == GAF_V_GROOVE)
 		return cook_torrance_from_G(D, gaf_G(gaf, lobe->ndf, wi, view->wo), cosines);
-	return cook_torrance_from_G1(gaf, D, masking_at(&lobe->masking, masking_q(wi)), view->lobe[l].G1, cosines);
+	return cook_torrance_from_G1(gaf, D, G1_at(lobe, wi), view->lobe[l].G1, cosines);
 }
 
 /* The half vector, and what lobes need of it. */
@@ -120,11 +129,12 @@ static double add_lobe(const struct surface *s, const struct view *view, int l, 
 	const struct surface_lobe *lobe = &s->lobe[l];
 	const double *ks = l ? model->ks_second : model->ks;
 	const double D = ndf_D(lobe->ndf, half.m);
-	if (!s->measured && !cook_torrance_has_channel_F(model)) {
+	const bool given = s->measured || s->other;
+	if (!given && !cook_torrance_has_channel_F(model)) {
 		const double value = facets_f(s, view, l, wi, cook_torrance_F(model, 0, half.cos_d) * D);
 		for (int c = 0; c < 3; c++)
 			f[c] += ks[c] * value;
-	} else if (!s->measured) {
+	} else if (!given) {
 		const double value = facets_f(s, view, l, wi, D);
 		for (int c = 0; c < 3; c++)
 			f[c] += ks[c] * cook_torrance_F(model, c, half.cos_d) * value;
@@ -152,7 +162,9 @@ double surface_f(const struct surface *s, const struct view *view, struct vec3 w
 	if (wi.z < SURFACE_HORIZON)
 		return 0;
 	const struct half half = half_of(wi, view->wo);
-	if (s->measured)
+	if (s->other)
+		s->other(s->context, wi, view->wo, f);
+	else if (s->measured)
 		measured_f(s->measured, wi, view->wo, f);
 	else
 		diffuse_f(s, view, wi, half, f);

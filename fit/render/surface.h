@@ -13,11 +13,15 @@ enum { SURFACE_LOBES = 2 };
 struct surface {
 	const struct cook_torrance *model; /* borrowed; directions are sampled by its lobes */
 	const struct measured *measured;   /* borrowed; what light does, instead of the model. NULL: the model */
+	/* The same by a function, 1/sr, which a caller may set after surface_init(), with its context. */
+	void (*other)(const void *context, struct vec3 wi, struct vec3 wo, double f[3]);
+	const void *context;
 	struct surface_lobe {
 		const struct ndf *ndf; /* of the model; NULL: it has no such lobe */
 		struct sampler sampler;
 		bool own;               /* it draws the model's own normals, whose D is at hand */
-		struct masking masking; /* G1 */
+		bool turns;             /* G1 changes with the azimuth, and is computed; else */
+		struct masking masking; /* it is tabulated */
 	} lobe[SURFACE_LOBES];
 };
 

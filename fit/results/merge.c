@@ -184,22 +184,37 @@ static size_t next_file(const struct merge *m, size_t i)
 
 static enum status lacks(const struct merge_part *without, const struct merge_part *with, struct error *error)
 {
-	char path[TEXT_QUOTE_SIZE / 2], there[LOCATION_SIZE], ndf[32];
+	const bool one_row = result_one_row_a_file(with->cell);
+	char path[TEXT_QUOTE_SIZE / 2], there[LOCATION_SIZE], what[32];
 	text_quote(without->cell[RESULT_PATH], path, sizeof path);
-	text_quote(with->cell[RESULT_NDF], ndf, sizeof ndf);
+	text_quote(with->cell[one_row ? RESULT_WEIGHT : RESULT_NDF], what, sizeof what);
 	return error_set(error, STATUS_FORMAT,
-			 "no row of '%s' for %s, as in %s: another --ndf or --weight, or a share that did not end",
-			 path, ndf, location(there, with));
+			 "no row of '%s' for %s, as in %s: another %s, or a share that did not end", path, what,
+			 location(there, with), one_row ? "--weight" : "--ndf or --weight");
 }
 
-/* Every file has rows of the same weights and NDFs. */
+/* The last row of the fit that row i is of: of --within, whose rows of a weight are one or failures, that weight's. */
+static size_t last_of_fit(const struct merge *m, size_t i, size_t end)
+{
+	while (result_one_row_a_file(m->part[i].cell) && i + 1 < end && !weight_order(&m->part[i], &m->part[i + 1]))
+		i++;
+	return i;
+}
+
+/* Every file has rows of the same weights and NDFs; of --within, of the same weights. */
 static enum status check_ndfs(const struct merge *m, struct error *error)
 {
+	const bool one_row = m->n > 0 && result_one_row_a_file(m->part[0].cell);
 	size_t i = 0, j = next_file(m, 0);
-	while (j < m->n && !result_one_row_a_file(m->part[0].cell)) {
+	while (j < m->n) {
 		const size_t end_i = j, end_j = next_file(m, j), start = j;
 		for (; i < end_i || j < end_j; i++, j++) {
-			const int order = i == end_i ? 1 : j == end_j ? -1 : fit_order(&m->part[i], &m->part[j]);
+			i = i < end_i ? last_of_fit(m, i, end_i) : i;
+			j = j < end_j ? last_of_fit(m, j, end_j) : j;
+			const int order = i == end_i   ? 1
+					  : j == end_j ? -1
+					  : one_row    ? weight_order(&m->part[i], &m->part[j])
+						       : fit_order(&m->part[i], &m->part[j]);
 			if (order)
 				return order < 0 ? lacks(&m->part[start], &m->part[i], error)
 						 : lacks(&m->part[end_i - 1], &m->part[j], error);

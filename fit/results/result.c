@@ -80,7 +80,29 @@ const struct csv_column result_columns[RESULT_COLUMNS] = {
 	[RESULT_K_G] = {"k_g", true},
 	[RESULT_K_B] = {"k_b", true},
 	[RESULT_SUSPECTS] = {"suspects", false},
+	[RESULT_SIGMA_LO] = {"sigma_lo", true},
+	[RESULT_SIGMA_HI] = {"sigma_hi", true},
+	[RESULT_GAMMA_LO] = {"gamma_lo", true},
+	[RESULT_GAMMA_HI] = {"gamma_hi", true},
+	[RESULT_IOR_LO] = {"ior_lo", true},
+	[RESULT_IOR_HI] = {"ior_hi", true},
+	[RESULT_K_LO] = {"k_lo", true},
+	[RESULT_K_HI] = {"k_hi", true},
+	[RESULT_EXPONENT_LO] = {"exponent_lo", true},
+	[RESULT_EXPONENT_HI] = {"exponent_hi", true},
+	[RESULT_SIGMA2_LO] = {"sigma2_lo", true},
+	[RESULT_SIGMA2_HI] = {"sigma2_hi", true},
+	[RESULT_GAMMA2_LO] = {"gamma2_lo", true},
+	[RESULT_GAMMA2_HI] = {"gamma2_hi", true},
+	[RESULT_OPEN_ENDS] = {"open_ends", false},
+	[RESULT_OTHER_INTERVALS] = {"other_intervals", false},
+	[RESULT_OTHER_BINS] = {"other_bins", false},
 };
+
+enum result_column result_interval_column(enum interval_parameter parameter)
+{
+	return RESULT_SIGMA_LO + 2 * (enum result_column)parameter;
+}
 
 void result_input(char text[RESULT_INPUT_SIZE], const struct measurement *measurement)
 {
@@ -284,6 +306,10 @@ static void set_model(struct row *row, const struct fit_options *options, const 
 		set_nodes(options, &model->ndf, params);
 	else
 		set_ndf(row, &model->ndf, params);
+	if (options->anisotropic && ndf_has_tilt(model->ndf.class)) {
+		add_param(params, "tilt_x", model->ndf.tilt_x);
+		add_param(params, "tilt_y", model->ndf.tilt_y);
+	}
 	if (model->per_channel_ior) {
 		set_channels(row, RESULT_IOR_R, model->channel_n);
 		set_channels(row, RESULT_K_R, model->channel_k);
@@ -362,10 +388,89 @@ static const char *status_text(char text[STATUS_SIZE], const struct fit_result *
 	return text;
 }
 
+enum { OPEN_SIZE = 192, OTHERS_SIZE = 1536 };
+
+/* Text of the intervals of a fit beside the columns of their ends. */
+struct interval_words {
+	char open[OPEN_SIZE];     /* "gamma_hi;ior_hi" */
+	char others[OTHERS_SIZE]; /* "sigma=0.3:0.4;sigma=0.7:0.9" */
+};
+
+static void add_open(struct interval_words *words, enum result_column column)
+{
+	const size_t used = strlen(words->open);
+	snprintf(words->open + used, OPEN_SIZE - used, "%s%s", used ? ";" : "", result_columns[column].name);
+}
+
+static void add_other(struct interval_words *words, const char *name, const struct interval *interval)
+{
+	char lo[CSV_NUMBER_SIZE], hi[CSV_NUMBER_SIZE];
+	const size_t used = strlen(words->others);
+	snprintf(words->others + used, OTHERS_SIZE - used, "%s%s=%s:%s", used ? ";" : "", name,
+		 csv_number(lo, interval->lo), csv_number(hi, interval->hi));
+}
+
+static void set_intervals(struct row *row, const struct fit_result *result, struct interval_words *words)
+{
+	*words = (struct interval_words){"", ""};
+	for (enum interval_parameter p = 0; p < INTERVAL_PARAMETERS; p++) {
+		const struct interval_list *list = &result->interval[p];
+		const enum result_column lo = result_interval_column(p);
+		if (!list->n)
+			continue;
+		set_number(row, lo, list->at[0].lo);
+		set_number(row, lo + 1, list->at[0].hi);
+		if (list->at[0].lo_open)
+			add_open(words, lo);
+		if (list->at[0].hi_open)
+			add_open(words, lo + 1);
+		for (int i = 1; i < list->n; i++)
+			add_other(words, interval_parameter_name(p), &list->at[i]);
+	}
+	row->cell[RESULT_OPEN_ENDS] = words->open;
+	row->cell[RESULT_OTHER_INTERVALS] = words->others;
+}
+
+/* The numbers of a row that describe a model, name=value;..., into text, and what is in its params but for a table's values. */
+static void write_model(char text[PARAMS_SIZE], const struct row *row, bool tabulated)
+{
+	size_t used = 0;
+	for (enum result_column c = 0; c < RESULT_COLUMNS; c++) {
+		const bool of_model = c == RESULT_ERROR || (c >= RESULT_KD_R && c <= RESULT_IOR) ||
+				      (c >= RESULT_SIGMA_X && c <= RESULT_ANGLE) ||
+				      (c >= RESULT_KG_R && c <= RESULT_GAMMA2);
+		if (of_model && row->cell[c] && *row->cell[c])
+			used += (size_t)snprintf(text + used, PARAMS_SIZE - used, "%s%s=%s", used ? ";" : "",
+						 result_columns[c].name, row->cell[c]);
+	}
+	const char *params = row->cell[RESULT_PARAMS];
+	if (params && *params && !tabulated)
+		snprintf(text + used, PARAMS_SIZE - used, ";%s", params);
+}
+
+/* The fit with the other bins: a row of its own, of which only the model is kept. */
+static enum status set_other_bins(struct row *row, const struct result_source *source,
+				  const struct fit_options *options, const struct fit_result *other,
+				  char text[PARAMS_SIZE])
+{
+	char params[PARAMS_SIZE] = "";
+	struct row *scratch = row_new(source, options, other->model.ndf.class, "");
+	if (!scratch)
+		return STATUS_NO_MEMORY;
+	set_number(scratch, RESULT_ERROR, other->error);
+	set_model(scratch, options, other, params);
+	write_model(text, scratch, ndf_is_tabulated(other->model.ndf.class));
+	row->cell[RESULT_OTHER_BINS] = text;
+	free(scratch);
+	return STATUS_OK;
+}
+
 enum status result_add(struct csv_table *table, const struct result_source *source, const struct fit_options *options,
 		       const struct fit_result *result)
 {
 	char params[PARAMS_SIZE] = "", bounds[NAMES_SIZE], text[STATUS_SIZE];
+	char other_bins[PARAMS_SIZE] = "";
+	struct interval_words words;
 	struct row *row = row_new(source, options, result->model.ndf.class, status_text(text, result));
 	if (!row)
 		return STATUS_NO_MEMORY;
@@ -378,6 +483,11 @@ enum status result_add(struct csv_table *table, const struct result_source *sour
 	row->cell[RESULT_AT_BOUND] = names_text(bounds, result->at_bound);
 	set_number(row, RESULT_EVALUATIONS, (double)result->evaluations);
 	set_number(row, RESULT_SECONDS, result->seconds);
+	set_intervals(row, result, &words);
+	if (result->other_bins && set_other_bins(row, source, options, result->other_bins, other_bins) != STATUS_OK) {
+		free(row);
+		return STATUS_NO_MEMORY;
+	}
 	return row_finish(row, table, source->path);
 }
 
@@ -578,6 +688,11 @@ static enum status result_ndf(char *const *row, const struct ndf_class *class, s
 	if (ndf_init_params(ndf, class, value) != STATUS_OK)
 		return STATUS_DOMAIN;
 	if (*row[RESULT_SIGMA_X] && result_axes(row, ndf, wrong) != STATUS_OK)
+		return STATUS_DOMAIN;
+	double tilt_x, tilt_y;
+	*wrong = RESULT_PARAMS;
+	if (ndf_has_tilt(class) && result_param(row[RESULT_PARAMS], "tilt_x", &tilt_x) &&
+	    !(result_param(row[RESULT_PARAMS], "tilt_y", &tilt_y) && ndf_tilt(ndf, tilt_x, tilt_y) == STATUS_OK))
 		return STATUS_DOMAIN;
 	*wrong = RESULT_LAMBDA;
 	if (lambda_form_find(row[RESULT_LAMBDA], &form) != STATUS_OK)

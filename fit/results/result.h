@@ -72,6 +72,23 @@ enum result_column {
 	RESULT_KS2_B,
 	RESULT_SIGMA2,
 	RESULT_GAMMA2,
+	RESULT_SIGMA_LO,
+	RESULT_SIGMA_HI,
+	RESULT_GAMMA_LO,
+	RESULT_GAMMA_HI,
+	RESULT_IOR_LO,
+	RESULT_IOR_HI,
+	RESULT_K_LO,
+	RESULT_K_HI,
+	RESULT_EXPONENT_LO,
+	RESULT_EXPONENT_HI,
+	RESULT_SIGMA2_LO,
+	RESULT_SIGMA2_HI,
+	RESULT_GAMMA2_LO,
+	RESULT_GAMMA2_HI,
+	RESULT_OPEN_ENDS,
+	RESULT_OTHER_INTERVALS,
+	RESULT_OTHER_BINS,
 	/* Of conductors with an index for each channel, else empty */
 	RESULT_IOR_R,
 	RESULT_IOR_G,
@@ -90,6 +107,9 @@ enum { RESULT_METRICS = RESULT_LOG_ERROR - RESULT_ERROR_NONE + 1 };
 
 /* result_metric - the value of a column from RESULT_ERROR_NONE to RESULT_LOG_ERROR; NaN of any other. */
 double result_metric(const struct fit_metrics *metrics, enum result_column column);
+
+/* result_interval_column - RESULT_SIGMA_LO or its like; the column of the upper end is the next one. */
+enum result_column result_interval_column(enum interval_parameter parameter);
 
 /* struct result_source - what the rows of one file share. */
 struct result_source {

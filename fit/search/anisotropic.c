@@ -39,30 +39,83 @@ static bool allowed(const struct fit_options *options, struct shape *shape)
 	return true;
 }
 
+/* A grid of shapes, evaluated on the coarsest table. Returns how many of them are starts. */
+static int evaluate_grid(const struct multiresolution *multiresolution, const struct fit_options *options,
+			 const struct ndf_class *class, struct grid_candidate grid[], int n,
+			 bool (*is_near)(const struct shape *a, const struct shape *b), struct shape start[], int count,
+			 long *evaluations, enum status *status)
+{
+	struct objective o;
+
+	*status = objective_init(&o, &multiresolution->table[0], options, class, 1, MASKING_COARSE);
+	if (*status != STATUS_OK)
+		return 0;
+	for (int i = 0; i < n; i++) {
+		struct linear linear;
+
+		grid[i].error = fit_cancelled(options) ? OBJECTIVE_NO_FIT
+						       : objective_eval(&o, &grid[i].shape, 2e-3, false, &linear);
+	}
+	objective_free(&o);
+	*evaluations += n;
+	return grid_starts_choose(grid, n, is_near, start, count);
+}
+
 int anisotropic_starts(const struct multiresolution *multiresolution, const struct fit_options *options,
 		       const struct ndf_class *class, const struct shape *isotropic, struct shape start[], int count,
 		       long *evaluations, enum status *status)
 {
 	struct grid_candidate *grid = malloc(GRID * sizeof *grid);
-	struct objective o;
-	int n = 0, kept = 0;
+	int n = 0;
 
-	*status = grid ? objective_init(&o, &multiresolution->table[0], options, class, 1, MASKING_COARSE)
-		       : STATUS_NO_MEMORY;
-	for (int i = 0; i < GRID && *status == STATUS_OK && !fit_cancelled(options); i++) {
-		struct linear linear;
-
+	*status = grid ? STATUS_OK : STATUS_NO_MEMORY;
+	for (int i = 0; i < GRID && grid; i++) {
 		grid[n] = (struct grid_candidate){.shape = grid_shape(isotropic, i), .index = i};
-		if (!allowed(options, &grid[n].shape))
-			continue;
-		grid[n].error = objective_eval(&o, &grid[n].shape, 2e-3, false, &linear);
-		n++;
+		n += allowed(options, &grid[n].shape);
 	}
-	if (*status == STATUS_OK) {
-		objective_free(&o);
-		*evaluations += n;
-		kept = grid_starts_choose(grid, n, near, start, count);
-	}
+	const int kept =
+		grid ? evaluate_grid(multiresolution, options, class, grid, n, near, start, count, evaluations, status)
+		     : 0;
+
+	free(grid);
+	return kept;
+}
+
+/* Of the roughness that a level lobe needs to reach as far: the tilt, and what is left. */
+static const double leans[] = {0.3, 0.8, 1.6}, narrowed[] = {0.3, 0.6, 1};
+enum { LEANS = 3, NARROWED = 3, DIRECTIONS = 8, TILTS = LEANS * NARROWED * DIRECTIONS };
+
+static struct shape tilted_shape(const struct shape *level, int index)
+{
+	struct shape shape = *level;
+	const double tilt = fmin(shape.sigma * leans[index % LEANS], FIT_TILT_MAX);
+	const double turn = 2 * M_PI / DIRECTIONS * (index / LEANS / NARROWED);
+
+	shape.sigma = fmax(shape.sigma * narrowed[index / LEANS % NARROWED], FIT_SIGMA_MIN);
+	shape.tilt_x = tilt * cos(turn);
+	shape.tilt_y = tilt * sin(turn);
+	return shape;
+}
+
+static bool tilted_near(const struct shape *a, const struct shape *b)
+{
+	return hypot(a->tilt_x - b->tilt_x, a->tilt_y - b->tilt_y) < 0.5 * hypot(a->tilt_x, a->tilt_y);
+}
+
+int tilted_starts(const struct multiresolution *multiresolution, const struct fit_options *options,
+		  const struct ndf_class *class, const struct shape level[], int n_level, struct shape start[],
+		  int count, long *evaluations, enum status *status)
+{
+	const int n = n_level * TILTS;
+	struct grid_candidate *grid = malloc((size_t)n * sizeof *grid);
+
+	*status = grid ? STATUS_OK : STATUS_NO_MEMORY;
+	for (int i = 0; i < n && grid; i++)
+		grid[i] = (struct grid_candidate){.shape = tilted_shape(&level[i / TILTS], i % TILTS), .index = i};
+	const int kept = grid ? evaluate_grid(multiresolution, options, class, grid, n, tilted_near, start, count,
+					      evaluations, status)
+			      : 0;
+
 	free(grid);
 	return kept;
 }

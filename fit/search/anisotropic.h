@@ -12,4 +12,10 @@ int anisotropic_starts(const struct multiresolution *multiresolution, const stru
 		       const struct ndf_class *class, const struct shape *isotropic, struct shape start[], int count,
 		       long *evaluations, enum status *status);
 
+/* tilted_starts - the same for facets that lean: over a grid of tilts in every direction, with the axes and less than the roughness
+ * of each of the n_level shapes, which do not lean. */
+int tilted_starts(const struct multiresolution *multiresolution, const struct fit_options *options,
+		  const struct ndf_class *class, const struct shape level[], int n_level, struct shape start[],
+		  int count, long *evaluations, enum status *status);
+
 #endif

@@ -237,8 +237,9 @@ struct nesting {
 static double gamma_of_nested(const struct ndf_class *class, int n)
 {
 	struct ndf ndf, plain;
-	const bool within = ndf_has_gamma(class) && ndf_init(&ndf, class, 1, 1, nested_gamma[n]) == STATUS_OK &&
-			    ndf_plain(&ndf, &plain) && plain.class == ndf_find(nested_name[n]) && plain.sigma_x == 1;
+	const bool within = (ndf_has_gamma(class) || ndf_has_tilt(class)) &&
+			    ndf_init(&ndf, class, 1, 1, nested_gamma[n]) == STATUS_OK && ndf_plain(&ndf, &plain) &&
+			    plain.class == ndf_find(nested_name[n]) && plain.sigma_x == 1;
 
 	return within ? nested_gamma[n] : NAN;
 }
@@ -264,7 +265,7 @@ struct nested {
 	struct fit_result result[NESTED], of_class[FIT_NDFS_MAX];
 };
 
-/* What a run remembers of its searches: 600 kB, too much for the stack of a thread. */
+/* What a run remembers of its searches: megabytes, too much for the stack of a thread. */
 struct memory {
 	struct nested nested, anisotropic;
 	struct scan_minima minima[FIT_NDFS_MAX];
@@ -429,16 +430,18 @@ static enum status fit_each_gamma(const struct run *run, const struct ndf_class 
 	struct fit_options options = *run->options;
 	struct run own = *run;
 	enum status status = STATUS_OK;
-	struct scan_minima *minima = &run->minima[index_of(class)], best_minima = *minima;
+	struct scan_minima *minima = &run->minima[index_of(class)], *best_minima = malloc(sizeof *best_minima);
 	struct fit_result one = {0};
 	struct ndf ndf;
 	struct further sum = {.options = run->options};
 	long passes = 0;
 	double worst = 0;
 
+	*r = (struct fit_result){.error = INFINITY};
+	if (!best_minima)
+		return STATUS_NO_MEMORY;
 	own.options = &options;
 	trace_further(&options, &sum);
-	*r = (struct fit_result){.error = INFINITY};
 	for (options.gamma = 1.5; options.gamma <= 16 && status == STATUS_OK; options.gamma += 0.5) {
 		const struct shape shape = {.sigma = 1, .gamma = options.gamma};
 
@@ -450,11 +453,13 @@ static enum status fit_each_gamma(const struct run *run, const struct ndf_class 
 		sum.seconds += one.seconds;
 		if (status == STATUS_OK && one.error < r->error) {
 			*r = one;
-			best_minima = *minima;
+			*best_minima = *minima;
 		}
 		worst = fmax(worst, one.error);
 	}
-	*minima = best_minima;
+	if (r->error < INFINITY)
+		*minima = *best_minima;
+	free(best_minima);
 	if (worst <= undetermined_limit(r->error))
 		r->undetermined = BOUND_GAMMA;
 	r->evaluations = sum.evaluations;
@@ -538,6 +543,8 @@ void fit_result_free(struct fit_result *result)
 	result->pwl = NULL;
 }
 
+enum { AXES_STARTS = 8 };
+
 /* The isotropic fit, then axes: from the isotropic optimum as it is, from those of the nested distributions that are anisotropic,
  * and from a scan. */
 static enum status fit_anisotropic(const struct run *run, const struct ndf_class *class, struct nested *nested,
@@ -547,7 +554,7 @@ static enum status fit_anisotropic(const struct run *run, const struct ndf_class
 	struct fit_options isotropic_options = *run->options, options = *run->options;
 	struct fit_result isotropic, inner[NESTED];
 	struct run own = *run;
-	struct shape start[SEARCH_GIVEN];
+	struct shape start[AXES_STARTS];
 	struct found found;
 	long evaluations = 0;
 	int count = 1;
@@ -571,8 +578,12 @@ static enum status fit_anisotropic(const struct run *run, const struct ndf_class
 	start[0] = shape_of(&isotropic.model);
 	if (has_sparse_lambda(run, class))
 		options.gamma = start[0].gamma; /* the other values have been fitted */
-	count += anisotropic_starts(&run->multiresolution, &options, class, &start[0], start + count,
-				    SEARCH_GIVEN - count, &evaluations, &status);
+	if (ndf_has_tilt(class))
+		count += tilted_starts(&run->multiresolution, &options, class, start, count, start + count,
+				       AXES_STARTS - count, &evaluations, &status);
+	else
+		count += anisotropic_starts(&run->multiresolution, &options, class, &start[0], start + count,
+					    AXES_STARTS - count, &evaluations, &status);
 	if (status == STATUS_OK)
 		status = search_from(&run->multiresolution, &options, class, start, count, &start[0], INFINITY, &found);
 	if (status == STATUS_OK)
@@ -730,6 +741,21 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 	return STATUS_OK;
 }
 
+/* What tilts is GGX where nothing tells the azimuth. */
+static enum status fit_level(const struct run *run, const struct ndf_class *class, struct nested *nested,
+			     struct fit_result *r)
+{
+	const struct ndf_class *ggx = ndf_find("ggx");
+	enum status status = fit_class(run, ggx, nested, r);
+
+	if (status != STATUS_OK)
+		return status;
+	run->minima[index_of(class)] = run->minima[index_of(ggx)];
+	const struct ndf ndf = r->model.ndf;
+
+	return ndf_init(&r->model.ndf, class, ndf.sigma_x, ndf.sigma_y, ndf.gamma);
+}
+
 /* Among the models of one kind, as the options have it. */
 static enum status fit_kind(const struct run *run, const struct ndf_class *class, struct nested *nested,
 			    struct fit_result *r)
@@ -740,6 +766,8 @@ static enum status fit_kind(const struct run *run, const struct ndf_class *class
 		return fit_free_form(run, nested, r);
 	if (run->options->anisotropic && isnan(run->options->sigma_y))
 		return fit_anisotropic(run, class, nested, r);
+	if (ndf_has_tilt(class) && !run->options->anisotropic && !run->options->algorithm)
+		return fit_level(run, class, nested, r);
 	if (nesting.any)
 		return fit_with_nested(run, class, &nesting, nested, r);
 	if (has_sparse_lambda(run, class))
@@ -856,6 +884,47 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
 }
 
+/* The intervals of one result. */
+static enum status find_intervals(const struct multiresolution *multiresolution, const struct fit_options *asked,
+				  const struct ndf_class *class, double percent, struct fit_result *r)
+{
+	const double begin = search_clock();
+	const struct shape best = shape_of(&r->model);
+	struct fit_options options = *asked;
+
+	if (options.lambda == LAMBDA_INTEGER || options.lambda == LAMBDA_HALF_INTEGER)
+		options.gamma = r->model.ndf.gamma; /* the values between have no such form */
+	const enum status status =
+		interval_find(multiresolution, &options, class, &best, r->error, percent, r->interval, &r->evaluations);
+
+	/* A simpler model may have been as good. */
+	if (!cook_torrance_has_second(&r->model))
+		r->interval[INTERVAL_SIGMA2].n = r->interval[INTERVAL_GAMMA2].n = 0;
+	r->seconds += search_clock() - begin;
+	return status;
+}
+
+enum status fit_intervals(const struct fit_context *context, const struct measurement *measurement,
+			  const struct fit_options *options, double percent, struct fit_result *results,
+			  struct error *error)
+{
+	struct multiresolution multiresolution;
+	struct sample_set full;
+	enum status status = check_arguments(context, measurement, options, error);
+
+	if (status != STATUS_OK)
+		return status;
+	status = sample_set_init(&full, &context->geometry, measurement, options->threads);
+	if (status == STATUS_OK)
+		status = multiresolution_init(&multiresolution, &full);
+	if (status != STATUS_OK)
+		return error_set(error, status, "%s", status_str(status));
+	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++)
+		status = find_intervals(&multiresolution, options, options->ndf[n], percent, &results[n]);
+	multiresolution_free(&multiresolution);
+	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
+}
+
 enum status fit_estimate(const struct fit_context *context, const struct measurement *measurement,
 			 const struct fit_options *options, double *estimate, struct error *error)
 {
@@ -893,7 +962,7 @@ enum status fit_eval(const struct measurement *measurement, const struct cook_to
 	enum status status;
 
 	own.criterion.gaf = model->gaf;
-	if (model->ndf.sigma_x != model->ndf.sigma_y && !measurement->scattered)
+	if (ndf_is_anisotropic(&model->ndf) && !measurement->scattered)
 		return error_set(error, STATUS_DOMAIN, "%s", isotropic_table);
 	status = fit_criterion_check(&own, error);
 	if (status != STATUS_OK)

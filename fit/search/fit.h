@@ -4,6 +4,7 @@
 #define FIT_H
 
 #include "fit/error/metrics.h"
+#include "fit/search/interval.h"
 
 enum fit_end {
 	FIT_CONVERGED,
@@ -56,8 +57,10 @@ struct fit_result {
 	 * contrary. In a gray fit kd and ks have three bits each, all or none. Of pl: ior and k only, and these only
 	 * when E is no higher without a specular term. None when another algorithm than the default one was used. */
 	unsigned undetermined;
-	long evaluations; /* shapes evaluated, on thinned and full tables together */
-	long passes;      /* over the full table, those of kd and ks included */
+	struct interval_list interval[INTERVAL_PARAMETERS]; /* fit_intervals()'s; of fit_run() none */
+	const struct fit_result *other_bins; /* the same fit with the other bins, the caller's; of fit_run() NULL */
+	long evaluations;                    /* shapes evaluated, on thinned and full tables together */
+	long passes;                         /* over the full table, those of kd and ks included */
 	double seconds;
 };
 
@@ -86,6 +89,13 @@ void fit_result_free(struct fit_result *result);
  * zero), STATUS_NO_MEMORY, STATUS_INTERRUPTED. */
 MUST_CHECK enum status fit_run(const struct fit_context *context, const struct measurement *measurement,
 			       const struct fit_options *options, struct fit_result *results, struct error *error);
+
+/* fit_intervals - how certain the shapes of fit_run()'s results are: results[n].interval of each of the options' NDFs, see
+ * interval_find(); percent > 0. Evaluations and seconds are added to those of the results. pl's stay empty.
+ * Errors: as fit_run() */
+MUST_CHECK enum status fit_intervals(const struct fit_context *context, const struct measurement *measurement,
+				     const struct fit_options *options, double percent, struct fit_result *results,
+				     struct error *error);
 
 /* fit_estimate - about the least error that any of the options' NDFs will end with, from samples of the table: within
  * 0.3 % as a rule, for a fraction of fit_run()'s work. INFINITY where one of them has no shape to search, or after an error.

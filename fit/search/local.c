@@ -63,15 +63,21 @@ static double evaluate(unsigned dims, const double *x, double *gradient, void *d
 	return error;
 }
 
+double local_spacing(enum coordinate coordinate)
+{
+	static const double spacing[] = {
+		[COORDINATE_SIGMA] = 0.35,       [COORDINATE_GAMMA] = 1.0,         [COORDINATE_IOR] = 0.1,
+		[COORDINATE_K] = 0.15,           [COORDINATE_LENGTH] = 0.1,        [COORDINATE_PHASE] = 0.35,
+		[COORDINATE_STRETCH_COS] = 0.35, [COORDINATE_STRETCH_SIN] = 0.35,  [COORDINATE_STRETCH] = 0.35,
+		[COORDINATE_ANGLE] = 15,         [COORDINATE_TILT_X] = 0.35,       [COORDINATE_TILT_Y] = 0.35,
+		[COORDINATE_GRAZING] = 0.4,      [COORDINATE_SECOND_SIGMA] = 0.35, [COORDINATE_SECOND_GAMMA] = 1.0};
+
+	return spacing[coordinate];
+}
+
 enum status local_descend(const struct space *space, struct objective *o, const struct local_settings *settings,
 			  local_report *report, void *user, struct space_point *point, bool *limited)
 {
-	static const double spacing[] = {
-		[COORDINATE_SIGMA] = 0.35,       [COORDINATE_GAMMA] = 1.0,        [COORDINATE_IOR] = 0.1,
-		[COORDINATE_K] = 0.15,           [COORDINATE_LENGTH] = 0.1,       [COORDINATE_PHASE] = 0.35,
-		[COORDINATE_STRETCH_COS] = 0.35, [COORDINATE_STRETCH_SIN] = 0.35, [COORDINATE_STRETCH] = 0.35,
-		[COORDINATE_ANGLE] = 15,         [COORDINATE_GRAZING] = 0.4,      [COORDINATE_SECOND_SIGMA] = 0.35,
-		[COORDINATE_SECOND_GAMMA] = 1.0};
 	const unsigned dims = (unsigned)space->dims;
 	struct local local = {
 		.space = space, .objective = o, .settings = settings, .report = report, .user = user, .best = *point};
@@ -85,7 +91,7 @@ enum status local_descend(const struct space *space, struct objective *o, const 
 	if (!opt)
 		return STATUS_NO_MEMORY;
 	for (unsigned d = 0; d < dims; d++) {
-		first[d] = settings->step * spacing[space->coordinate[d]];
+		first[d] = settings->step * local_spacing(space->coordinate[d]);
 		if (x[d] + first[d] > space->hi[d])
 			first[d] = -first[d];
 	}

@@ -16,8 +16,14 @@ struct local_settings {
 	double enough; /* an error at which it may stop; 0: none */
 };
 
+/* local_spacing - about the spacing of the scan's grid along a coordinate. */
+double local_spacing(enum coordinate coordinate);
+
 /* Called at every evaluation, by the thread that searches; NULL: nobody. */
 typedef void local_report(void *user, const struct shape *shape, const struct linear *linear);
+
+/* local_spacing - about how far the indices of the scan stand apart. */
+double local_spacing(enum coordinate coordinate);
 
 /* local_descend - improves *point on the objective's table; point->error need not be set before.
  * Returns: the best point seen; *limited (if not NULL): stopped by settings->evaluations while the error still fell

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/search/search.h"
+#include "fit/search/newton.h"
 #include "fit/search/valley.h"
 #include "src/splitmix.h"
 #include <math.h>
@@ -192,19 +193,37 @@ static int pick_starts(const struct search *s, struct space_point *grid, struct 
 /* How a level is searched. */
 struct stage {
 	const char *name;
-	int max_points; /* points that go on from the level before, at most */
-	double margin;  /* those whose error is within this of the best, relative */
+	int max_points;                    /* points that go on from the level before, at most */
+	double margin;                     /* those whose error is within this of the best, relative */
+	struct local_settings by_gradient; /* newton.h's; no evaluations: without */
 	struct local_settings settings;
 };
-/* On the small tables, whose error is rugged, the simplex method is the one that gets through. What is left to do on the
- * full one is mostly a millionth of the error, on smooth ground: a quadratic model needs the fewest evaluations there. Where
- * the valley is long and flat, it takes its time: the error has to be the least to 1e-6, whatever rounding does. */
+/* On the smallest table, whose error is rugged, the simplex method is the one that gets through. The others are smooth to their
+ * tolerances, and what one level has learnt of the second derivatives holds for the next: on the full table two or three
+ * evaluations are left. Where the gradient is of no use, a quadratic model of values needs the fewest there. Where the valley is
+ * long and flat, it takes its time: the error has to be the least to 1e-6, whatever rounding does. */
 static const struct stage stages[SEARCH_LEVELS] = {
-	{"thin-1", 0, 0, {NLOPT_LN_SBPLX, 0.7, 2e-4, 150, false, 0}},
-	{"thin-2", 8, 0.02, {NLOPT_LN_SBPLX, 0.3, 3e-5, 150, false, 0}},
-	{"thin-3", 4, 3e-3, {NLOPT_LN_SBPLX, 0.2, 1e-6, 250, false, 0}},
-	{"full", 2, 1e-4, {NLOPT_LN_BOBYQA, 0.01, 3e-7, 400, true, 0}},
+	{"thin-1", 0, 0, {.evaluations = 0}, {NLOPT_LN_SBPLX, 0.7, 2e-4, 150, false, 0}},
+	{"thin-2",
+	 8,
+	 0.02,
+	 {.step = 0.3, .tolerance = 3e-5, .evaluations = 25},
+	 {NLOPT_LN_SBPLX, 0.3, 3e-5, 150, false, 0}},
+	{"thin-3",
+	 4,
+	 3e-3,
+	 {.step = 0.2, .tolerance = 1e-6, .evaluations = 25},
+	 {NLOPT_LN_SBPLX, 0.2, 1e-6, 250, false, 0}},
+	{"full",
+	 2,
+	 1e-4,
+	 {.step = 0.05, .tolerance = 1e-7, .evaluations = 25},
+	 {NLOPT_LN_BOBYQA, 0.01, 3e-7, 400, true, 0}},
 };
+
+/* E below which a table is all but free of noise, and above which a search of such a table is not at its end. */
+#define NOISE_FREE 0.01
+#define NEXT_TO_NOTHING 1e-6
 
 static bool near(const struct search *s, const struct space_point *a, const struct space_point *b)
 {
@@ -234,8 +253,39 @@ static int thin_out(const struct search *s, struct space_point *point, int count
 	return kept;
 }
 
+/* Where E is smooth about its least, its gradient leads there: not where E is next to nothing, nor on a sample so small that
+ * the kink each entry makes shows. Where that does not end on the full table, a search without gradients follows. */
+static bool is_smooth(const struct objective *o, const struct space_point *point)
+{
+	const bool few = o->table->scattered && o->table->n_samples <= OBJECTIVE_EXACT_SAMPLES;
+
+	return point->error > NOISE_FREE && !few;
+}
+
+static enum status refine(struct search *s, int level, struct objective *o, struct space_point *point, bool *limited)
+{
+	const struct stage *stage = &stages[level];
+
+	if (stage->by_gradient.evaluations > 0 && is_smooth(o, point)) {
+		bool converged = false;
+		const enum status status =
+			newton_descend(&s->space, o, &stage->by_gradient, report, s, point, &converged);
+
+		if (level < SEARCH_LEVELS - 1 || converged || status != STATUS_OK)
+			return status;
+	}
+	return local_descend(&s->space, o, &stage->settings, report, s, point, limited);
+}
+
 /* Up to so many scattered entries, the end of a search is without tables: it costs no more than the rest. */
 enum { EXACT_SAMPLES = 4096 };
+
+static bool has_few_entries(const struct search *s)
+{
+	const struct sample_set *full = &s->multiresolution->table[SEARCH_LEVELS - 1];
+
+	return full->scattered && full->n_samples <= EXACT_SAMPLES;
+}
 
 /* Refines the points on one level's table one after the other; the calling thread leads, the others of its team help
  * with the passes. */
@@ -243,15 +293,15 @@ static enum status refine_in_turn(struct search *s, int level, struct space_poin
 				  struct found *found)
 {
 	const struct sample_set *table = &s->multiresolution->table[level];
-	const bool few = level == SEARCH_LEVELS - 1 && table->scattered && table->n_samples <= EXACT_SAMPLES;
+	const bool exact = level == SEARCH_LEVELS - 1 && has_few_entries(s);
 	struct objective o;
 	enum status status = objective_init(&o, table, s->options, s->class, s->options->threads,
-					    few ? MASKING_FINE : MASKING_COARSE);
+					    exact ? MASKING_FINE : MASKING_COARSE);
 
 	if (status != STATUS_OK)
 		return status;
 	for (int n = 0; n < count && status == STATUS_OK; n++)
-		status = local_descend(&s->space, &o, &stages[level].settings, report, s, &point[n], &found->limited);
+		status = refine(s, level, &o, &point[n], &found->limited);
 	if (level == SEARCH_LEVELS - 1)
 		found->passes += o.passes;
 	objective_free(&o);
@@ -273,8 +323,7 @@ static enum status refine_at_once(struct search *s, int level, struct space_poin
 #pragma omp for schedule(dynamic)
 		for (int n = 0; n < count; n++) {
 			if (mine == STATUS_OK && !cancelled(s))
-				mine = local_descend(&s->space, &o, &stages[level].settings, report, s, &point[n],
-						     NULL);
+				mine = refine(s, level, &o, &point[n], NULL);
 		}
 		if (ready)
 			objective_free(&o);
@@ -298,21 +347,17 @@ static enum status refine_all(struct search *s, int level, struct space_point *p
 	return status;
 }
 
-/* E below which a table is all but free of noise, and above which a search of such a table is not at its end. */
-#define NOISE_FREE 0.01
-#define NEXT_TO_NOTHING 1e-6
-
 /* Where the search of such a table is stuck on the floor of a valley, leads it on: on the smallest sample, then on the
- * full table. */
+ * full table. Of few entries, noise makes the floor rugged. */
 static enum status follow_valley(struct search *s, struct space_point *best, struct found *found)
 {
-	const bool limited = found->limited;
+	const bool limited = found->limited, smooth = best->error <= NOISE_FREE;
 	const double stage_best = s->stage_best;
 	struct space_point point = *best;
 	struct objective o;
 	enum status status;
 
-	if (s->space.dims < 2 || best->error > NOISE_FREE || best->error < NEXT_TO_NOTHING)
+	if (s->space.dims < 2 || !(smooth || has_few_entries(s)) || best->error < NEXT_TO_NOTHING)
 		return STATUS_OK;
 	status = objective_init(&o, &s->multiresolution->table[0], s->options, s->class, 1, MASKING_COARSE);
 	if (status != STATUS_OK)
@@ -612,24 +657,51 @@ enum status search_estimate(const struct multiresolution *multiresolution, const
 			    const struct ndf_class *class, double *error)
 {
 	struct search s = new_search(multiresolution, options, class);
-	struct space_point point[FIRST_POINTS_MAX] = {{.error = 0}};
+	struct space_point *point = calloc(FIRST_POINTS_MAX, sizeof *point);
 	struct scan_minima *minima = calloc(1, sizeof *minima);
 	struct found found = {.starts = 0};
-	enum status status = minima ? STATUS_OK : STATUS_NO_MEMORY;
-	int count = s.space.dims == 0;
+	enum status status = point && minima ? STATUS_OK : STATUS_NO_MEMORY;
+	int count = 1;
 
 	if (status == STATUS_OK && s.space.dims > 0)
 		count = first_points(&s, point, minima, &status);
-
 	for (int level = 0; level < 2 && status == STATUS_OK && s.space.dims > 0; level++) {
 		if (level > 0)
 			count = thin_out(&s, point, count, &stages[level]);
 		status = refine_all(&s, level, point, count, &found);
 	}
-	free(minima);
 	*error = INFINITY;
-	for (int n = 0; n < count && s.space.dims > 0; n++)
+	for (int n = 0; n < count && status == STATUS_OK && s.space.dims > 0; n++)
 		*error = fmin(*error, point[n].error);
+	free(minima);
+	free(point);
+	if (status != STATUS_OK)
+		return status;
+	return cancelled(&s) ? STATUS_INTERRUPTED : status;
+}
+
+enum status search_minima(const struct multiresolution *multiresolution, const struct fit_options *options,
+			  const struct ndf_class *class, int level, double margin, struct space_point minimum[],
+			  int n_max, int *n, struct scan_minima *scan_minima, _Atomic long *evaluations)
+{
+	struct search s = new_search(multiresolution, options, class);
+	struct space_point point[FIRST_POINTS_MAX] = {{.error = 0}};
+	const struct stage last = {.max_points = n_max, .margin = margin};
+	struct found found = {.starts = 0};
+	enum status status = STATUS_OK;
+	int count = first_points(&s, point, scan_minima, &status);
+
+	for (int l = 0; l <= level && status == STATUS_OK; l++) {
+		/* What the sample before is wrong about a difference of errors comes on top. */
+		const struct stage stage = {.max_points = stages[l].max_points, .margin = margin + stages[l].margin};
+
+		if (l > 0)
+			count = thin_out(&s, point, count, &stage);
+		status = refine_all(&s, l, point, count, &found);
+	}
+	*n = status == STATUS_OK ? thin_out(&s, point, count, &last) : 0;
+	memcpy(minimum, point, (size_t)*n * sizeof *minimum);
+	*evaluations += s.evaluations;
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }
 
@@ -639,20 +711,27 @@ enum status search_from(const struct multiresolution *multiresolution, const str
 {
 	struct fit_options own = *options;
 	struct search s;
-	struct space_point point[SEARCH_GIVEN] = {{.error = 0}};
 	enum status status = STATUS_OK;
 
-	own.starts = 0;
+	/* Of two lobes there is no search_run(), which would have them. */
+	own.starts = options->lobes > 1 ? options->starts : 0;
 	s = new_search(multiresolution, &own, class);
+	struct space_point *point = calloc(SEARCH_GIVEN + (size_t)own.starts, sizeof *point);
+
 	space_from_shape(&s.space, known, s.known.x);
 	s.known.error = error;
 	*found = (struct found){.starts = n_given, .linear.error = INFINITY};
+	if (!point)
+		return STATUS_NO_MEMORY;
 	for (int n = 0; n < n_given; n++)
 		space_from_shape(&s.space, &given[n], point[n].x);
 	const int count = descend(&s, 0, point, n_given, found, &status);
 
 	if (count > 0 && status == STATUS_OK)
 		status = finish(&s, point, count, found);
+	if (count > 0 && status == STATUS_OK && own.starts > 0)
+		status = search_random(&s, point, found);
+	free(point);
 	found->evaluations = s.evaluations;
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }

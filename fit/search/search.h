@@ -5,7 +5,7 @@
 
 #include "fit/search/local.h"
 
-enum { SEARCH_LEVELS = 4, SEARCH_GIVEN = 8 };
+enum { SEARCH_LEVELS = 4, SEARCH_GIVEN = 20 };
 
 /* struct multiresolution - the table of a material and its thinned copies, coarsest first; the last is the full table. */
 struct multiresolution {
@@ -35,8 +35,8 @@ struct found {
 /* search_clock - seconds of a clock that only runs forward. */
 double search_clock(void);
 
-/* search_run - minimises E over the free parameters among sigma, gamma, ior and k, wherever its minimum is. *minima is left as it
- * is where there is nothing to search; it is too large for the stack of a thread.
+/* search_run - minimises E over the free parameters among sigma, gamma, ior and k, wherever its minimum is. *minima is set if
+ * there was anything to search.
  * Errors:  STATUS_NO_MEMORY, STATUS_INTERRUPTED */
 MUST_CHECK enum status search_run(const struct multiresolution *multiresolution, const struct fit_options *options,
 				  const struct ndf_class *class, struct scan_minima *minima, struct found *found);
@@ -47,8 +47,18 @@ MUST_CHECK enum status search_run(const struct multiresolution *multiresolution,
 MUST_CHECK enum status search_estimate(const struct multiresolution *multiresolution, const struct fit_options *options,
 				       const struct ndf_class *class, double *error);
 
+/* search_minima - the local minima that the scan leads to, refined on the samples up to `level`, best first: at most n_max
+ * of those whose E is within `margin` (relative) of the least; and what the scan has shown. Counts the shapes that it
+ * evaluates in *evaluations.
+ * Errors:  as search_run() */
+MUST_CHECK enum status search_minima(const struct multiresolution *multiresolution, const struct fit_options *options,
+				     const struct ndf_class *class, int level, double margin,
+				     struct space_point point[], int n_max, int *n, struct scan_minima *scan,
+				     _Atomic long *evaluations);
+
 /* search_from - goes down from the given shapes only (at most SEARCH_GIVEN), against a shape that is known already and
- * its error: what leads there, or to nothing better, is given up early. If all is, found->linear.error is INFINITY.
+ * its error: what leads there, or to nothing better, is given up early. If all is, found->linear.error is INFINITY. Of two
+ * lobes the options' random starts come after that.
  * Errors:  as search_run() */
 MUST_CHECK enum status search_from(const struct multiresolution *multiresolution, const struct fit_options *options,
 				   const struct ndf_class *class, const struct shape given[], int n_given,

@@ -30,10 +30,16 @@ static double *parameter(const struct space *s, int d, struct shape *shape)
 		return &shape->second_gamma;
 	case COORDINATE_ANGLE:
 		return &shape->angle;
+	case COORDINATE_TILT_X:
+		return &shape->tilt_x;
+	case COORDINATE_TILT_Y:
+		return &shape->tilt_y;
 	default:
 		return &shape->stretch;
 	}
 }
+
+#define TILT_UNIT 0.05
 
 static double to_coordinate(enum coordinate c, double least_gamma, double value)
 {
@@ -49,6 +55,9 @@ static double to_coordinate(enum coordinate c, double least_gamma, double value)
 		return (value - 1) / (value + 1);
 	case COORDINATE_K:
 		return value / (value + 1);
+	case COORDINATE_TILT_X:
+	case COORDINATE_TILT_Y:
+		return asinh(value / TILT_UNIT);
 	default:
 		return value;
 	}
@@ -68,6 +77,9 @@ static double from_coordinate(enum coordinate c, double least_gamma, double x)
 		return (1 + x) / (1 - x);
 	case COORDINATE_K:
 		return x / (1 - x);
+	case COORDINATE_TILT_X:
+	case COORDINATE_TILT_Y:
+		return TILT_UNIT * sinh(x);
 	default:
 		return x;
 	}
@@ -88,7 +100,7 @@ static const struct axis scan_k = {{0, 0.15, 0.4, 0.8, 1.4, 2.2, 3.4, 5.5, 10, 3
 static const struct axis scan_length = {{0.03, 0.1, 0.25, 0.5, 0.75, 0.92, 0.985}, 7};
 static const struct axis scan_phase = {{0, 0.35, 0.75, 1.3, 2.1, 3.1}, 6};
 /* The scan is of isotropic shapes, unless the roughnesses are fixed. */
-static const struct axis scan_stretch = {{0}, 1};
+static const struct axis scan_stretch = {{0}, 1}, scan_tilt = {{0}, 1};
 /* Of the grazing term and the second lobe there is no scan: fit.c knows where to begin. */
 static const struct axis scan_grazing = {{5}, 1};
 static const struct axis scan_second = {{0.3}, 1}, scan_second_gamma = {{3}, 1};
@@ -209,6 +221,10 @@ void space_init(struct space *s, const struct fit_options *o, const struct ndf_c
 	add_index(s, o);
 	if (o->anisotropic)
 		add_axes(s, o);
+	if (o->anisotropic && ndf_has_tilt(class)) {
+		add_dim(s, COORDINATE_TILT_X, -FIT_TILT_MAX, FIT_TILT_MAX, &scan_tilt);
+		add_dim(s, COORDINATE_TILT_Y, -FIT_TILT_MAX, FIT_TILT_MAX, &scan_tilt);
+	}
 	add_grazing(s, o);
 	if (o->lobes > 1)
 		add_second(s, class);
@@ -263,7 +279,9 @@ static double phase_of(double n, double k)
 
 bool space_is_of_axes(const struct space *s, int d)
 {
-	return is_of_pair(s->coordinate[d]) || s->coordinate[d] == COORDINATE_STRETCH;
+	const enum coordinate c = s->coordinate[d];
+
+	return is_of_pair(c) || c == COORDINATE_STRETCH || c == COORDINATE_TILT_X || c == COORDINATE_TILT_Y;
 }
 
 struct shape space_shape(const struct space *s, const double x[])
@@ -350,4 +368,15 @@ void space_fix_index(struct space *s, int channel, bool fix_k, double value)
 		set_dim(s, d, COORDINATE_IOR, FIT_CONDUCTOR_IOR_MIN, FIT_IOR_MAX, &scan_ior);
 	else
 		set_dim(s, d, COORDINATE_K, 0, FIT_K_MAX, &scan_k);
+}
+
+void space_plain_index(struct space *s)
+{
+	for (int d = 0; d < s->dims && !s->per_channel; d++) {
+		if (s->coordinate[d] == COORDINATE_LENGTH)
+			set_dim(s, d, COORDINATE_IOR, FIT_CONDUCTOR_IOR_MIN, FIT_IOR_MAX, &scan_ior);
+		else if (s->coordinate[d] == COORDINATE_PHASE)
+			set_dim(s, d, COORDINATE_K, 0, FIT_K_MAX, &scan_k);
+	}
+	s->has_amplitude[0] = s->has_amplitude[0] && s->per_channel;
 }

@@ -6,7 +6,7 @@
 
 #include "fit/error/objective.h"
 
-enum { SPACE_DIMS = 8, SPACE_VALUES = 34 };
+enum { SPACE_DIMS = 8, SPACE_VALUES = 34, SPACE_SECOND = SPACE_DIMS * (SPACE_DIMS + 1) / 2 };
 
 enum coordinate {
 	COORDINATE_SIGMA,        /* ln sigma, of STD's sigma for the distributions that are STD with another sigma */
@@ -25,6 +25,8 @@ enum coordinate {
 	COORDINATE_STRETCH_SIN, /* l sin 2a: isotropy is a point like others, and no angle the end of a range */
 	COORDINATE_STRETCH,     /* l itself, where a is fixed */
 	COORDINATE_ANGLE,       /* a, where l is fixed */
+	COORDINATE_TILT_X,      /* asinh(tilt_x/0.05): tilts of sharp lobes are small */
+	COORDINATE_TILT_Y,      /* likewise */
 };
 
 /* struct axis - values of one parameter, ascending: points of a grid. */
@@ -57,6 +59,8 @@ struct space_point {
 	double x[SPACE_DIMS];
 	double error;
 	struct linear linear; /* kd and ks there; its error is 0 where they are not known */
+	/* Second derivatives of E, lengths in spacings of the scan: row by row from the diagonal on; all 0: not known. */
+	float curvature[SPACE_SECOND];
 };
 
 /* space_init - what the options leave free for an NDF; nothing without a specular term. */
@@ -71,13 +75,15 @@ double space_x(const struct space *space, int d, double value);
 double space_value(const struct space *space, int d, double x);
 /* space_is_of_ior - whether dimension d, a conductor's COORDINATE_LENGTH included, says how high F is. */
 bool space_is_of_ior(const struct space *space, int d);
-/* space_is_of_axes - whether dimension d is one of the axes' coordinates but COORDINATE_ANGLE. */
+/* space_is_of_axes - whether dimension d is one of the axes' coordinates but COORDINATE_ANGLE, or of the tilt. */
 bool space_is_of_axes(const struct space *space, int d);
 /* space_fix - takes dimension d out: its parameter has this value from now on, gamma = inf included. */
 void space_fix(struct space *space, int d, double value);
 /* space_fix_index - puts the other of n and k in the place of COORDINATE_LENGTH and COORDINATE_PHASE of a channel: n, or k, has this
  * value from now on. */
 void space_fix_index(struct space *space, int channel, bool fix_k, double value);
+/* space_plain_index - puts n and k that all channels share in the place of COORDINATE_LENGTH and COORDINATE_PHASE. */
+void space_plain_index(struct space *space);
 /* space_index - n (0) or k (1) of a channel within a shape of this space. */
 double *space_index(const struct space *space, struct shape *shape, int channel, int which);
 

@@ -65,7 +65,8 @@ static int parameters(const struct fit_options *options, struct variant v)
 		return n;
 	n += ks + (isnan(options->sigma) ? 1 : 0) + (has_free_gamma(options, v.ndf) ? 1 : 0);
 	if (v.parts & PART_AXES)
-		n += (isnan(options->sigma_y) ? 1 : 0) + (isnan(options->angle) ? 1 : 0);
+		n += (isnan(options->sigma_y) ? 1 : 0) + (isnan(options->angle) ? 1 : 0) +
+		     (ndf_has_tilt(options->ndf[v.ndf]) ? 2 : 0);
 	if ((v.parts & PART_FRESNEL) && options->per_channel_ior && (v.parts & PART_COLOUR_SPECULAR))
 		n += 2 * MERL_CHANNELS;
 	else if (v.parts & PART_FRESNEL)

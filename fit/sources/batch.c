@@ -29,7 +29,7 @@ struct run {
 	size_t next;                  /* the next file to fit */
 	size_t *finished, n_finished; /* files in the order in which they ended */
 	int running;                  /* threads */
-	struct fit_context *context[WEIGHT_COUNT][CONTEXTS];
+	struct fit_context *context[WEIGHT_COUNT][BINS_COUNT][CONTEXTS];
 };
 
 enum status batch_init(struct batch *batch, const struct options *options, const struct files *files)
@@ -84,11 +84,11 @@ void batch_sources(const struct batch *batch, const struct batch_file *file, str
 		source[w] = batch_source(batch, file, w);
 }
 
-/* The context for this weight and kind of table, made by the first thread that needs it. */
+/* The context for this weight, these bins and this kind of table, made by the first thread that needs it. */
 static enum status get_context(struct run *run, int n_phi_d, const struct fit_options *fit,
 			       const struct fit_context **context)
 {
-	struct fit_context **shared = &run->context[fit->criterion.weight][n_phi_d / CONTEXT_PHI];
+	struct fit_context **shared = &run->context[fit->criterion.weight][fit->criterion.bins][n_phi_d / CONTEXT_PHI];
 	enum status status = STATUS_OK;
 	pthread_mutex_lock(&run->lock);
 	if (!*shared)
@@ -153,6 +153,26 @@ static enum status fit_within(const struct fit_context *context, const struct me
 	return error_set(error, STATUS_NO_MEMORY, "out of memory");
 }
 
+/* The same fits with entries at the centres of the bins. */
+static enum status fit_centres(struct run *run, const struct measurement *measurement, const struct fit_options *fit,
+			       struct fit_result *result, struct fit_result *centre, struct error *error)
+{
+	const struct fit_context *context;
+	struct fit_options other = *fit;
+	other.criterion.bins = BINS_CENTRE;
+	other.trace = NULL;
+	enum status status = get_context(run, measurement->n_phi_d, &other, &context);
+	if (status != STATUS_OK)
+		return error_set(error, status, "%s", status_str(status));
+	status = fit_run(context, measurement, &other, centre, error);
+	for (int i = 0; i < fit->n_ndf && status == STATUS_OK; i++) {
+		result[i].other_bins = &centre[i];
+		result[i].evaluations += centre[i].evaluations;
+		result[i].seconds += centre[i].seconds;
+	}
+	return status;
+}
+
 /* Fits what *fit asks for under weight w. */
 static enum status fit_samples(struct run *run, struct batch_file *file, const struct measurement *measurement, int w,
 			       struct fit_options *fit)
@@ -160,7 +180,7 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 	const struct options *options = run->batch->options;
 	struct result_source source = batch_source(run->batch, file, w);
 	const struct fit_context *context;
-	struct fit_result result[FIT_NDFS_MAX];
+	struct fit_result result[FIT_NDFS_MAX], centre[FIT_NDFS_MAX];
 	char *text = NULL;
 	enum status status = get_context(run, measurement->n_phi_d, fit, &context);
 	if (status != STATUS_OK)
@@ -171,9 +191,15 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 		status = fit_run(context, measurement, fit, result, &file->error);
 	if (status != STATUS_OK)
 		return status;
+	if (!isnan(options->intervals) && fit->specular)
+		status = fit_intervals(context, measurement, fit, options->intervals, result, &file->error);
+	if (status == STATUS_OK && options->both_bins && !measurement->scattered)
+		status = fit_centres(run, measurement, fit, result, centre, &file->error);
 	for (int i = 0; i < fit->n_ndf; i++) {
 		if (status == STATUS_OK && result_add(&file->rows, &source, fit, &result[i]) != STATUS_OK)
 			status = error_set(&file->error, STATUS_NO_MEMORY, "out of memory");
+		if (result[i].other_bins)
+			fit_result_free(&centre[i]);
 		fit_result_free(&result[i]);
 	}
 	free(text);
@@ -394,8 +420,9 @@ int batch_run(struct batch *batch)
 		report_error("cannot start a thread");
 	for (int i = 0; i < started; i++)
 		pthread_join(thread[i], NULL);
-	for (int i = 0; i < WEIGHT_COUNT * CONTEXTS; i++)
-		fit_context_free(run.context[i / CONTEXTS][i % CONTEXTS]);
+	for (int w = 0; w < WEIGHT_COUNT; w++)
+		for (int i = 0; i < BINS_COUNT * CONTEXTS; i++)
+			fit_context_free(run.context[w][i / CONTEXTS][i % CONTEXTS]);
 	free(run.finished);
 	free(thread);
 	if (!stopped && *batch->options->cancel)

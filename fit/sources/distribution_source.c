@@ -12,15 +12,14 @@ int distribution_source_check(const struct options *options)
 		return options_usage(options->command, "--phi-i means nothing without --theta-i");
 	if (!options->from && options->n_paths != 1)
 		return options_usage(options->command, "expected one NAME, or --from, found %d", options->n_paths);
-	/* Its weight has masking alone, of wo. */
-	if (!options->from && !strcmp(options->path[0], "ellipsoid") && options_given(options, "gaf"))
-		return options_usage(options->command, "--gaf means nothing for ellipsoid");
 	if (!options->from)
 		return -1;
 	if (options->n_paths)
 		return options_usage(options->command, "NAME and --from exclude each other");
 	if (options_given(options, "params"))
 		return options_usage(options->command, "--params and --from exclude each other");
+	if (options_given(options, "nodes"))
+		return options_usage(options->command, "--nodes and --from exclude each other");
 	return model_source_check(options, false);
 }
 
@@ -38,6 +37,7 @@ static enum status describe(const struct options *options, struct described *ite
 		.sigma_y = item->sigma_y,
 		.gamma = options->gamma_words,
 		.params = options->params,
+		.nodes = options->nodes,
 		.lambda = options_given(options, "lambda") ? lambda_form_name(options->fit.lambda) : NULL,
 	};
 	if (length >= sizeof item->sigma || (comma && strlen(comma + 1) >= sizeof item->sigma_y))
@@ -56,6 +56,7 @@ static void move_model(const struct source_model *model, struct described *item)
 	item->gaf = model->model.gaf;
 	item->words = (struct distribution_words){.name = item->distribution.name,
 						  .sigma = item->sigma,
+						  .sigma_y = item->sigma_y,
 						  .gamma = item->gamma,
 						  .params = item->params,
 						  .lambda = lambda_form_name(ndf->lambda_form)};
@@ -71,6 +72,13 @@ static void move_model(const struct source_model *model, struct described *item)
 		else
 			snprintf(item->params + used, sizeof item->params - used, "%s%s=%s", used ? ";" : "",
 				 param->name, number);
+	}
+	if (ndf_is_anisotropic(ndf) && !ndf_is_tabulated(ndf->class))
+		csv_number(item->sigma_y, ndf->sigma_y);
+	if (ndf_is_tilted(ndf)) {
+		char x[CSV_NUMBER_SIZE], y[CSV_NUMBER_SIZE];
+		snprintf(item->params, sizeof item->params, "tilt_x=%s;tilt_y=%s", csv_number(x, ndf->tilt_x),
+			 csv_number(y, ndf->tilt_y));
 	}
 }
 

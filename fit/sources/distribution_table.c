@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/sources/distribution_table.h"
 #include "fit/cli/angles.h"
+#include "src/ndf_slopes.h"
+#include "src/vndf.h"
 
 #include <math.h>
 
@@ -60,6 +62,7 @@ static void set(struct line *line, enum distribution_column column, double x)
 static void evaluate(struct line *line, const struct distribution *distribution, enum gaf gaf,
 		     struct directions directions)
 {
+	const struct ndf *ndf = &distribution->ndf;
 	const struct vec3 m = vec3_from_spherical_deg(directions.theta, directions.phi);
 	const struct vec3 wi = distribution_direction(directions.theta_i, directions.phi_i);
 	const double slope = hypot(m.x, m.y) / m.z, azimuth = directions.phi * M_PI / 180;
@@ -67,12 +70,12 @@ static void evaluate(struct line *line, const struct distribution *distribution,
 	set(line, DISTRIBUTION_THETA, directions.theta);
 	set(line, DISTRIBUTION_PHI, directions.phi);
 	set(line, DISTRIBUTION_THETA_I, directions.theta_i);
-	set(line, DISTRIBUTION_D, distribution_D(distribution, m));
-	set(line, DISTRIBUTION_P22, m.z > 0 ? distribution_P22(distribution, -m.x / m.z, -m.y / m.z) : NAN);
-	set(line, DISTRIBUTION_P2, m.z > 0 ? distribution_P2(distribution, azimuth, slope) : NAN);
-	set(line, DISTRIBUTION_LAMBDA, distribution_lambda(distribution, m));
-	set(line, DISTRIBUTION_G1, distribution_G1(distribution, m));
-	set(line, DISTRIBUTION_PDF, distribution_D(distribution, m) * m.z);
+	set(line, DISTRIBUTION_D, ndf_D(ndf, m));
+	set(line, DISTRIBUTION_P22, m.z > 0 ? ndf_P22(ndf, -m.x / m.z, -m.y / m.z) : NAN);
+	set(line, DISTRIBUTION_P2, m.z > 0 ? ndf_P2(ndf, azimuth, slope) : NAN);
+	set(line, DISTRIBUTION_LAMBDA, ndf_lambda(ndf, m));
+	set(line, DISTRIBUTION_G1, ndf_G1(ndf, m));
+	set(line, DISTRIBUTION_PDF, ndf_D(ndf, m) * m.z);
 	set(line, DISTRIBUTION_CDF, cdf.joint);
 	set(line, DISTRIBUTION_CDF_PHI, cdf.phi);
 	set(line, DISTRIBUTION_CDF_THETA, cdf.theta);
@@ -84,9 +87,9 @@ static void evaluate(struct line *line, const struct distribution *distribution,
 	set(line, DISTRIBUTION_PHI_I, directions.phi_i);
 	set(line, DISTRIBUTION_VISIBLE_CDF, cdf.along);
 	set(line, DISTRIBUTION_ACROSS_CDF, cdf.across);
-	const double pdf = distribution_visible_pdf(distribution, wi, m);
+	const double pdf = vndf_pdf(ndf, wi, m);
 	set(line, DISTRIBUTION_VISIBLE_PDF, pdf);
-	set(line, DISTRIBUTION_WEIGHT, pdf > 0 ? distribution_weight(distribution, gaf, wi, m, pdf) : 0);
+	set(line, DISTRIBUTION_WEIGHT, pdf > 0 ? vndf_weight(ndf, gaf, wi, m, pdf) : 0);
 }
 
 static enum status add(struct csv_table *table, const struct line *line, struct error *error)
@@ -163,9 +166,12 @@ static enum status row_directions(const struct options *options, char *const *ro
 enum status distribution_table_evaluate(struct csv_table *table, const struct options *options, char *const *given,
 					struct error *error)
 {
-	const struct distribution_words words = {given[DISTRIBUTION_NDF],     given[DISTRIBUTION_SIGMA],
-						 given[DISTRIBUTION_SIGMA_Y], given[DISTRIBUTION_GAMMA],
-						 given[DISTRIBUTION_PARAMS],  given[DISTRIBUTION_LAMBDA_FORM]};
+	const struct distribution_words words = {.name = given[DISTRIBUTION_NDF],
+						 .sigma = given[DISTRIBUTION_SIGMA],
+						 .sigma_y = given[DISTRIBUTION_SIGMA_Y],
+						 .gamma = given[DISTRIBUTION_GAMMA],
+						 .params = given[DISTRIBUTION_PARAMS],
+						 .lambda = given[DISTRIBUTION_LAMBDA_FORM]};
 	struct distribution distribution;
 	struct line line = {.cell = {0}};
 	struct directions directions;

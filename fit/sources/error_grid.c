@@ -71,8 +71,15 @@ enum status error_grid_make(const struct materials *materials, struct error_grid
 	*grid = (struct error_grid){.line = calloc(materials->n + 1, sizeof(*grid->line))};
 	if (!grid->line)
 		return STATUS_NO_MEMORY;
-	for (size_t m = 0; m < materials->n; m++)
-		add_material(grid, &materials->material[m]);
+	const struct material *last = NULL;
+	for (size_t m = 0; m < materials->n; m++) {
+		const struct material *material = &materials->material[m];
+		add_material(grid, material);
+		if (grid->line[m].best < 0)
+			continue;
+		grid->n_distinct += !last || !material_is_same(last, material);
+		last = material;
+	}
 	return STATUS_OK;
 }
 

@@ -19,6 +19,7 @@ struct error_grid {
 	const char *ndf[FIT_NDFS_MAX]; /* in the order of their first rows */
 	const char *weight[FIT_NDFS_MAX];
 	size_t n, n_fitted;      /* materials; those with a fit */
+	size_t n_distinct;       /* of these without those that differ from another by options only, as the weight */
 	struct error_line *line; /* in the order of the materials */
 	bool by_std;             /* sorted by the error of STD, which every fitted material has; of one weight only */
 };

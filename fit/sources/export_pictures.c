@@ -34,14 +34,16 @@ static enum status render(const struct studio *studio, const struct cook_torranc
 /* What the target shows. */
 static enum status render_shown(const struct studio *studio, const struct export *export, struct sphere *sphere)
 {
-	struct measurement table;
-	if (export_shows_model(export))
-		return render(studio, &export->model, NULL, sphere);
-	enum status status = export_shown_table(export, &table);
+	struct surface surface;
+	enum status status = surface_init(&surface, &export->model, NULL, SAMPLING_VISIBLE);
 	if (status != STATUS_OK)
 		return status;
-	status = render(studio, &export->model, &table, sphere);
-	measurement_free(&table);
+	if (!export_shows_model(export)) {
+		surface.other = export_shown_f;
+		surface.context = export;
+	}
+	status = sphere_render(&surface, &studio->light, &studio->options, sphere);
+	surface_free(&surface);
 	return status;
 }
 
@@ -83,8 +85,8 @@ enum status export_pictures(struct export *export, struct measurement *measureme
 	if (status != STATUS_OK)
 		return status;
 	/* What turns is shown as it is, with tangents. */
-	studio.options.tangents = (measurement && measurement_turns(measurement)) ||
-				  export->source.model->ndf.sigma_x != export->source.model->ndf.sigma_y;
+	studio.options.tangents =
+		(measurement && measurement_turns(measurement)) || ndf_is_anisotropic(&export->source.model->ndf);
 	if (measurement && !measurement_turns(measurement))
 		status = measurement_fill(measurement, studio.bins, fit->threads);
 	if (status == STATUS_OK)

@@ -23,12 +23,21 @@ static int text_order(char *const *a, char *const *b, enum result_column column)
 	return strcmp(a[column], b[column]);
 }
 
+static int file_order(char *const *a, char *const *b)
+{
+	const int order = text_order(a, b, RESULT_MATERIAL);
+	return order ? order : text_order(a, b, RESULT_PATH);
+}
+
 static int material_order(char *const *a, char *const *b)
 {
-	int order = text_order(a, b, RESULT_MATERIAL);
-	if (!order)
-		order = text_order(a, b, RESULT_PATH);
+	const int order = file_order(a, b);
 	return order ? order : text_order(a, b, RESULT_OPTIONS);
+}
+
+bool material_is_same(const struct material *a, const struct material *b)
+{
+	return file_order(a->row[0], b->row[0]) == 0;
 }
 
 /* A row and its index, so that the NDFs of a material keep their order. */
@@ -127,11 +136,13 @@ static enum status name_files(struct materials *materials)
 static enum status group_rows(struct materials *materials)
 {
 	const struct csv_table *rows = &materials->rows;
-	materials->n = 0;
+	materials->n = materials->n_distinct = 0;
 	materials->material = calloc(rows->n_rows + 1, sizeof(*materials->material));
 	if (!materials->material)
 		return STATUS_NO_MEMORY;
 	for (size_t i = 0; i < rows->n_rows; i++) {
+		if (i == 0 || file_order(rows->row[i - 1], rows->row[i]))
+			materials->n_distinct++;
 		if (i == 0 || material_order(rows->row[i - 1], rows->row[i])) {
 			struct material *m = &materials->material[materials->n++];
 			m->name = rows->row[i][RESULT_MATERIAL];

@@ -17,11 +17,14 @@ struct material {
 	size_t n_rows;
 };
 
+/* material_is_same - whether both are of one name and file: fits under other options. */
+bool material_is_same(const struct material *a, const struct material *b);
+
 struct materials {
 	struct csv_table rows; /* in order of material, path, options, ndf as given */
 	struct material *material;
-	size_t n;
-	bool reported; /* why a material has no fit: they were fitted just now */
+	size_t n, n_distinct; /* the latter without those that differ from another by options only */
+	bool reported;        /* why a material has no fit: they were fitted just now */
 };
 
 /* materials_collect - rows of the one result table among the command's paths, or of a fit of its files.

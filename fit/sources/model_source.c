@@ -29,11 +29,12 @@ static const char *first_given(const struct options *options, const char *const 
 static const char *const of_a_fit[] = {"unbounded", "no-diffuse", "no-specular",     "gray", "anisotropic",
 				       "diffuse",   "lobes",      "per-channel-ior", NULL};
 /* Options that a fit has no use for: what they say is what it finds. */
-static const char *const of_a_given_model[] = {"k", "f0", "f82", "f90", "kg", "ks2", "sigma2", "gamma2", NULL};
+static const char *const of_a_given_model[] = {"k",      "f0",     "f82",    "f90",   "kg", "ks2",
+					       "sigma2", "gamma2", "params", "nodes", NULL};
 /* Options that a row determines. */
-static const char *const of_a_model[] = {"kd",  "ks",     "sigma",    "angle",   "gamma",     "ior",    "k",
-					 "gaf", "lambda", "bins",     "fresnel", "max-theta", "f0",     "f82",
-					 "f90", "kg",     "exponent", "ks2",     "sigma2",    "gamma2", NULL};
+static const char *const of_a_model[] = {"kd",       "ks",   "sigma",   "angle",     "gamma",  "ior",   "k",   "gaf",
+					 "lambda",   "bins", "fresnel", "max-theta", "f0",     "f82",   "f90", "kg",
+					 "exponent", "ks2",  "sigma2",  "gamma2",    "params", "nodes", NULL};
 
 /* An export fits a model in the place of another: the weight is of that fit. Elsewhere it chooses rows. */
 static bool weighs_substitute(const struct options *options)
@@ -73,7 +74,10 @@ static int check_given(const struct options *options)
 	if (ignored)
 		return options_usage(options->command, "--%s means nothing without a fit, --kd and --ks give the model",
 				     ignored);
-	return options_model(options, &model);
+	struct distribution distribution;
+	const int wrong = options_model(options, &model, &distribution);
+	distribution_free(&distribution);
+	return wrong;
 }
 
 int model_source_check(const struct options *options, bool may_fit)
@@ -129,9 +133,11 @@ static enum status read_given(const struct options *options, const char *materia
 	if (!model)
 		return no_memory(error);
 	model->fit.criterion.weight = WEIGHT_NONE; /* nothing was fitted */
-	return options_model(options, &model->model) < 0
-		       ? STATUS_OK
-		       : error_set(error, STATUS_DOMAIN, "the options describe no model");
+	struct distribution distribution;
+	if (options_model(options, &model->model, &distribution) >= 0)
+		return error_set(error, STATUS_DOMAIN, "the options describe no model");
+	model->pwl = distribution.pwl;
+	return STATUS_OK;
 }
 
 static bool wanted(const struct options *options, char *const *row, size_t i, const char *material)
