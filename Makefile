@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Targets: all (default), check, check-long, check-docs, demo, bench, figures, stability, asan, ubsan, tsan, lint, architecture,
+# Targets: all (default), check, check-long, check-docs, demo, bench, figures, tables, stability, asan, ubsan, tsan, lint, architecture,
 # valgrind, compilers, fuzz, killtest, export-table, page-tools, install, uninstall, dist, deb, clean. Those that check or show something install what is
 # missing first.
 VERSION := 0.2.0
@@ -64,7 +64,7 @@ test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 # Attacks on inputs, outputs and memory, and fits of hard tables: half of the time of all tests.
 only_long := alloc convert export export_axes fetch free_form hostile hostile_names hostile_outputs outputs plot resample richer slurm stiff suspects terminal
 # Some cases in check, all in check-long: check.h, case_step().
-with_long_cases := anisotropic conductor dielectric fit given_ndf interval objective python random_walk scattered_fit
+with_long_cases := anisotropic conductor dielectric fit given_ndf interval objective python random_walk report scattered_fit
 short_programs := $(filter-out $(only_long:%=$(BUILD)/tests/test_%),$(test_programs))
 long_programs := $(foreach t,$(only_long) $(with_long_cases),$(BUILD)/tests/test_$(t))
 
@@ -187,10 +187,16 @@ bench: setup
 	@$(MAKE) --no-print-directory $(BUILD)/tests/bench
 	$(BUILD)/tests/bench $(BUILD)/bench.csv
 
-# The STD paper's figures; Fig. 11 of the fits in FITS=FILE.csv, or of the files in MERL=DIR, or of synthetic tables.
+# The figures of the five papers; Fig. 11 of the STD paper of the fits in FITS=FILE.csv, or of the files in MERL=DIR, or of synthetic tables.
 figures: setup
 	@$(MAKE) --no-print-directory all $(BUILD)/tests/figures
 	@FITS='$(FITS)' MERL='$(MERL)' scripts/figures.sh $(BUILD)
+
+# docs/tables.md from the measured tables in MERL=DIR: an hour. WORK=DIR keeps what it is made from; SOME=DIR has those tables that
+# richer models are fitted to, where not all are.
+tables: setup
+	@$(MAKE) --no-print-directory all
+	@scripts/tables.sh $(BUILD)/stdfit '$(MERL)' $(if $(WORK),'$(WORK)' $(if $(SOME),'$(SOME)'))
 
 # The mathematics over the extremes of its domain: BUILD/stability.csv and a summary; then fits of hard tables. Fails where
 # it finds something.
@@ -224,6 +230,6 @@ clean:
 
 include scripts/install.mk
 
-.PHONY: all setup check check-long check-docs check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures stability demo export-table page-tools clean
+.PHONY: all setup check check-long check-docs check-includes architecture run-tests run-long-tests run-all-tests asan ubsan tsan lint valgrind compilers fuzz run-fuzz killtest bench figures tables stability demo export-table page-tools clean
 
 -include $(lib_objects:.o=.d) $(BUILD)/fit/commands/main.d $(patsubst %.c,$(BUILD)/%.d,$(wildcard tests/*.c))

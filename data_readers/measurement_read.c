@@ -172,6 +172,17 @@ static enum status unknown(struct error *why)
 	return error_set(why, STATUS_FORMAT, "its format is not known: expected %s", known);
 }
 
+/* Of two formats with an extension, the binary one does not get what is text. */
+static const struct format *by_name(const char *path, const struct head *head)
+{
+	const bool text = head->n && !memchr(head->bytes, '\0', head->n);
+	const struct format *found = NULL;
+	for (int i = 0; i < FORMATS; i++)
+		if (extension_of(&formats[i], path) && (!found || (text && formats[i].lines)))
+			found = &formats[i];
+	return found;
+}
+
 /* The format of a file: by its content, else by its name. */
 static enum status choose(const char *path, const struct head *head, const struct format **format, struct error *why)
 {
@@ -179,9 +190,8 @@ static enum status choose(const char *path, const struct head *head, const struc
 	const char *foreign = *format ? NULL : foreign_file(head->bytes, head->n);
 	if (foreign)
 		return error_set(why, STATUS_FORMAT, "it %s", foreign);
-	for (int i = 0; i < FORMATS && !*format; i++)
-		if (extension_of(&formats[i], path))
-			*format = &formats[i];
+	if (!*format)
+		*format = by_name(path, head);
 	return *format ? STATUS_OK : unknown(why);
 }
 

@@ -58,13 +58,15 @@ static enum status take_shape(struct cursor *cursor, struct tensor *tensor, size
 		tensor->shape[d] = take_number(cursor, 8);
 		if (cursor->short_of_bytes)
 			return STATUS_OK; /* told by the caller */
-		if (tensor->shape[d] == 0 || tensor->shape[d] > cursor->size / *bytes)
-			return error_set(why, STATUS_FORMAT, "field '%s': a dimension of %" PRIu64 " is impossible",
-					 tensor->name, tensor->shape[d]);
-		*bytes *= tensor->shape[d]; /* each factor is at most the file's size: no overflow of 64 bits ... */
+		if (tensor->shape[d] == 0)
+			return error_set(why, STATUS_FORMAT, "field '%s': a dimension of 0 is impossible",
+					 tensor->name);
+		if (tensor->shape[d] > cursor->size / *bytes)
+			return error_set(why, STATUS_FORMAT,
+					 "field '%s': a dimension of %" PRIu64 " does not fit into a file of %zu bytes",
+					 tensor->name, tensor->shape[d], cursor->size);
+		*bytes *= tensor->shape[d]; /* at most the file's size */
 		tensor->count *= tensor->shape[d];
-		if (*bytes > cursor->size) /* ... since it ends here */
-			return error_set(why, STATUS_FORMAT, "field '%s' is larger than the file", tensor->name);
 	}
 	return STATUS_OK;
 }
@@ -121,21 +123,24 @@ static const unsigned char *end_of(const struct tensor *tensor)
 	return tensor->data + tensor->count * size_of_type((uint64_t)tensor->type);
 }
 
-static enum status check_apart(const struct tensor_file *file, const unsigned char *header_end, struct error *why)
+static enum status check_apart(const struct tensor_file *file, const unsigned char *bytes,
+			       const unsigned char *header_end, struct error *why)
 {
 	for (int a = 0; a < file->n; a++) {
 		const struct tensor *one = &file->field[a];
 
 		if (one->data < header_end)
-			return error_set(why, STATUS_FORMAT, "field '%s' overlaps the header", one->name);
+			return error_set(why, STATUS_FORMAT, "field '%s' overlaps the header, at byte %zu", one->name,
+					 (size_t)(one->data - bytes));
 		for (int b = 0; b < a; b++) {
 			const struct tensor *other = &file->field[b];
 
 			if (strcmp(one->name, other->name) == 0)
 				return error_set(why, STATUS_FORMAT, "two fields are called '%s'", one->name);
 			if (one->data < end_of(other) && other->data < end_of(one))
-				return error_set(why, STATUS_FORMAT, "fields '%s' and '%s' overlap", other->name,
-						 one->name);
+				return error_set(why, STATUS_FORMAT,
+						 "fields '%s' and '%s' overlap, at bytes %zu and %zu", other->name,
+						 one->name, (size_t)(other->data - bytes), (size_t)(one->data - bytes));
 		}
 	}
 	return STATUS_OK;
@@ -163,7 +168,7 @@ enum status tensor_file_parse(const unsigned char *bytes, size_t size, struct te
 		status = take_field(&cursor, &file->field[file->n], why);
 		file->n++;
 	}
-	return status == STATUS_OK ? check_apart(file, bytes + cursor.at, why) : status;
+	return status == STATUS_OK ? check_apart(file, bytes, bytes + cursor.at, why) : status;
 }
 
 const struct tensor *tensor_file_find(const struct tensor_file *file, const char *name)

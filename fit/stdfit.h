@@ -149,11 +149,21 @@ STDFIT_MUST_CHECK enum stdfit_status stdfit_ndf_furnace(const stdfit_ndf *ndf, c
 /* ---- Models ---- */
 
 /* struct stdfit_model - a model but for its NDF. gaf: as above; fresnel: "dielectric" (NULL), "schlick", "conductor",
- * "none". Ranges: n in (0, 1e75], k in [0, 1e75], read by the conductor only; kd, ks in [0, 1e6]. */
+ * "none", "f82". Ranges: n in (0, 1e75], k in [0, 1e75], read by the conductor only; kd, ks, kg, ks2 in [0, 1e6]. What richer
+ * models have besides may be left 0:
+ *    f0, f82, f90      of "f82" only: F along the normal, at cos_d = 1/7 and at grazing incidence, in [0, 1]
+ *    kg, exponent      kg cos_d^2 ((1 - cos_i)^p + (1 - cos_o)^p)/pi is added; p in [1, 20], read where some kg is not 0
+ *    ks2, sigma2, gamma2   a second lobe of the same kind of NDF, isotropic, with the same F and G; the last two, gamma2 of
+ *                      NDFs that have a gamma, are read where some ks2 is not 0; of a class of stdfit_ndf_new() only */
 struct stdfit_model {
 	const char *gaf, *fresnel;
 	double n, k;
 	double kd[3], ks[3];
+	double f0[3], f82[3], f90[3];
+	double kg[3];
+	double exponent;
+	double ks2[3];
+	double sigma2, gamma2;
 };
 
 /* stdfit_model_default - uncorrelated G, a dielectric of n = 1.5, kd = 0, ks = 1. */
@@ -314,6 +324,9 @@ struct stdfit_options {
 	int zero_is_missing;   /* entries that are 0 in all channels count as not measured */
 	int gray;              /* one kd and one ks for all channels */
 	int anisotropic;       /* of samples: two roughnesses and the angle of their axes, all searched */
+	int burley;            /* the model has kg, too; needs the diffuse term */
+	double exponent;       /* of that term: fixed, in [1, 20], or NaN */
+	int lobes;             /* 1, or 2: with ks2, sigma2 and gamma2, too; not with "f82" */
 	int starts;            /* 0 .. 100000 extra random starts */
 	int threads;           /* 1 .. 1024; changes no result */
 	uint64_t seed;         /* of random starts */
@@ -344,10 +357,13 @@ enum stdfit_parameter {
 	STDFIT_PARAMETER_KD = 8,  /* red; green and blue are the two next bits */
 	STDFIT_PARAMETER_KS = 64, /* likewise */
 	STDFIT_PARAMETER_K = 512,
-	STDFIT_PARAMETER_ANGLE = 1024
+	STDFIT_PARAMETER_ANGLE = 1024,
+	STDFIT_PARAMETER_EXPONENT = 2048,
+	STDFIT_PARAMETER_SIGMA2 = 4096,
+	STDFIT_PARAMETER_GAMMA2 = 8192
 };
 
-/* stdfit_parameter_name - "sigma", "gamma", "n", "kd_r", ..., "ks_b", "k", "angle" of one such bit; NULL for any other number. */
+/* stdfit_parameter_name - "sigma", "gamma", "n", "kd_r", ..., "ks_b", "k", "angle", "exponent", "sigma2", "gamma2" of one such bit; NULL for any other number. */
 const char *stdfit_parameter_name(unsigned bit);
 
 /* struct stdfit_result - of one NDF. */

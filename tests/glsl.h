@@ -61,7 +61,7 @@ struct glsl_function {
 	struct glsl_node *body;
 };
 
-enum { GLSL_VARIABLES = 256, GLSL_FUNCTIONS = 32, GLSL_DEPTH = 40 };
+enum { GLSL_VARIABLES = 256, GLSL_FUNCTIONS = 64, GLSL_DEPTH = 40 };
 
 struct glsl {
 	const char *text, *at;

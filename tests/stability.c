@@ -34,7 +34,7 @@ struct row {
 	char what[240]; /* the first finding */
 };
 
-enum { ROWS_MAX = 256 };
+enum { ROWS_MAX = 512 };
 static struct row rows[ROWS_MAX];
 static int n_rows;
 static char at_hand[160]; /* the parameters at hand */
@@ -925,6 +925,50 @@ static void sweep_one_ellipsoid(const struct ellipsoid *e, const char *name, con
 		}
 }
 
+/* The same as one of the distributions. */
+static void sweep_one_tilted(const struct ndf *ndf, const char *matrix)
+{
+	static const char name[] = "tilted";
+	struct vec3 w[EXTREME_DIRECTIONS];
+	extreme_directions(0.1, w);
+	for (int i = 0; i < EXTREME_DIRECTIONS; i++)
+		for (double phi = 0.0; phi < 6.0; phi += 1.3) {
+			const struct vec3 v = turned(w[i], phi);
+			double value;
+			int flags;
+			set_case("%s w (%g, %g, %g)", matrix, v.x, v.y, v.z);
+			trapping = v.z < 1e-270 ? FE_INVALID : TRAPS;
+			OBSERVE(value, flags, ndf_D(ndf, v));
+			check(row_of("D", name), value, flags & trapping,
+			      (struct expected){0.0, INFINITY, false, NAN, 1.0});
+			OBSERVE(value, flags, ndf_G1(ndf, v));
+			check(row_of("G1", name), value, flags & trapping,
+			      (struct expected){0.0, 1.0, false, NAN, 1.0});
+			for (int j = i % 5; j < COUNT(uniform) * COUNT(uniform); j += 5) {
+				const double u1 = uniform[j % COUNT(uniform)], u2 = uniform[j / COUNT(uniform)];
+				struct vec3 m;
+				OBSERVE(m, flags, vndf_sample(ndf, v, u1, u2));
+				check(row_of("visible sample", name), m.z, flags & trapping,
+				      (struct expected){DBL_MIN, 1.0, false, NAN, 1.0});
+				check(row_of("visible sample", name), vec3_dot(v, m), 0,
+				      (struct expected){-eps, 1.0 + 4.0 * eps, false, NAN, 1.0});
+				OBSERVE(value, flags, vndf_pdf(ndf, v, m));
+				check(row_of("visible pdf", name), value, flags & trapping,
+				      (struct expected){0.0, INFINITY, false, NAN, 1.0});
+			}
+			trapping = TRAPS;
+		}
+}
+
+static void sweep_tilted(const struct ellipsoid *e, const char *matrix)
+{
+	struct ndf ndf;
+	if (ndf_from_ellipsoid(&ndf, e) == STATUS_OK)
+		sweep_one_tilted(&ndf, matrix);
+	else
+		row_of("D", "tilted")->refused++;
+}
+
 static void sweep_ellipsoid(void)
 {
 	for (int i = 0; i < COUNT(extreme_sigma); i++)
@@ -935,10 +979,12 @@ static void sweep_ellipsoid(void)
 				snprintf(matrix, sizeof(matrix), "alpha %g %g turn %d", extreme_sigma[i],
 					 extreme_sigma[j], turn);
 				if (ellipsoid_init_angles(&e, extreme_sigma[i], extreme_sigma[j], 0.4 * turn,
-							  -0.7 * turn, 1.0 * turn) == STATUS_OK)
-					sweep_one_ellipsoid(&e, "ellipsoid", matrix);
-				else
+							  -0.7 * turn, 1.0 * turn) != STATUS_OK) {
 					row_of("D", "ellipsoid")->refused++;
+					continue;
+				}
+				sweep_one_ellipsoid(&e, "ellipsoid", matrix);
+				sweep_tilted(&e, matrix);
 			}
 }
 

@@ -438,6 +438,112 @@ static void samples_are_fitted_with_axes(void **state)
 	expect(stdfit_measurement_from_samples(&measurement, 1, NULL, wo, values, NULL, &error), STDFIT_DOMAIN, "NULL");
 }
 
+/* A model of many terms, and the same as the internals have it. */
+static struct cook_torrance rich_model(bool f82, struct stdfit_model *model)
+{
+	struct cook_torrance inner = make_model("ggx", 0.2, 2, 1.5);
+
+	*model = stdfit_model_default();
+	for (int c = 0; c < 3; c++) {
+		if (f82) {
+			model->f0[c] = inner.reflectance[c][0] = 0.7 - 0.2 * c;
+			model->f82[c] = inner.reflectance[c][1] = 0.5 + 0.1 * c;
+			model->f90[c] = inner.reflectance[c][2] = 0.9;
+			inner.ks[c] = 1;
+		} else {
+			model->kg[c] = inner.kg[c] = 0.3 - 0.1 * c;
+			model->ks2[c] = inner.ks_second[c] = 0.2;
+		}
+		model->kd[c] = inner.kd[c];
+		model->ks[c] = inner.ks[c];
+	}
+	if (f82) {
+		inner.fresnel = FRESNEL_F82;
+		model->fresnel = "f82";
+	}
+	inner.grazing = model->exponent = 4;
+	model->sigma2 = 0.6;
+	if (ndf_init(&inner.second, inner.ndf.class, 0.6, 0.6, 2) != STATUS_OK)
+		abort();
+	return inner;
+}
+
+static void richer_models_are_those_of_the_internals(void **state)
+{
+	const double wi[3] = {0.6, 0, 0.8}, wo[3] = {0, 0.96, 0.28};
+	stdfit_ndf *ndf = new_ndf("ggx", 0.2, 0);
+	struct stdfit_model model;
+	double got[3], want[3];
+
+	(void)state;
+	for (int f82 = 0; f82 < 2; f82++) {
+		const struct cook_torrance inner = rich_model(f82, &model);
+
+		cook_torrance_f(&inner, (struct vec3){0.6, 0, 0.8}, (struct vec3){0, 0.96, 0.28}, want);
+		expect(stdfit_model_evaluate(&model, ndf, 1, wi, wo, got, &error), STDFIT_OK, "");
+		for (int c = 0; c < 3; c++)
+			assert_true(got[c] == want[c] && want[c] > 0);
+	}
+	model.f82[1] = 1.5;
+	expect(stdfit_model_evaluate(&model, ndf, 1, wi, wo, got, &error), STDFIT_DOMAIN, "f82");
+	rich_model(false, &model);
+	model.sigma2 = 0;
+	expect(stdfit_model_evaluate(&model, ndf, 1, wi, wo, got, &error), STDFIT_DOMAIN, "sigma2");
+	rich_model(false, &model);
+	model.exponent = 0;
+	expect(stdfit_model_evaluate(&model, ndf, 1, wi, wo, got, &error), STDFIT_DOMAIN, "exponent");
+	stdfit_ndf_free(ndf);
+}
+
+/* What a fit hands over has the error that it says. */
+static void richer_models_are_fitted(void **state)
+{
+	enum { N = 200 };
+	static double wi[3 * N], wo[3 * N], values[3 * N];
+
+	(void)state;
+	for (int f82 = 0; f82 < 2; f82++) {
+		struct stdfit_model model;
+		const struct cook_torrance truth = rich_model(f82, &model);
+		struct stdfit_options options = ggx_options();
+		struct measurement made = make_scattered(&truth, N, 0.02, 5);
+		stdfit_measurement *measurement;
+		stdfit_context *context;
+		struct stdfit_result result;
+		struct stdfit_metrics metrics;
+
+		for (size_t i = 0; i < N; i++) {
+			memcpy(wi + 3 * i, &made.scattered->wi[i], 3 * sizeof *wi);
+			memcpy(wo + 3 * i, &made.scattered->wo[i], 3 * sizeof *wo);
+			for (size_t c = 0; c < 3; c++)
+				values[3 * i + c] = (double)made.scattered->value[c][i];
+		}
+		measurement_free(&made);
+		options.fresnel = f82 ? "f82" : NULL;
+		options.lobes = f82 ? 1 : 2;
+		options.n = f82 ? NAN : 1.5;
+		expect(stdfit_measurement_from_samples(&measurement, N, wi, wo, values, NULL, &error), STDFIT_OK, "");
+		expect(stdfit_context_new(&context, 0, &options, &error), STDFIT_OK, "");
+		expect(stdfit_fit(context, measurement, &options, 1, &result, &error), STDFIT_OK, "");
+		check_between(result.error, 0.005, f82 ? 0.02 : 0.2, "E");
+		assert_true(f82 ? result.model.f0[0] > 0.5 : result.model.ks2[0] > 0);
+		expect(stdfit_compare(measurement, &result.model, result.distribution, &options, &metrics, &error),
+		       STDFIT_OK, "");
+		check_rel(metrics.error[0], result.error, 1e-12, "E of the model handed over");
+		stdfit_result_clear(&result);
+		stdfit_context_free(context);
+		stdfit_measurement_free(measurement);
+	}
+	struct stdfit_options options = ggx_options();
+	stdfit_context *context;
+
+	options.lobes = 3;
+	expect(stdfit_context_new(&context, 0, &options, &error), STDFIT_DOMAIN, "lobes");
+	options.lobes = 1;
+	options.exponent = 0.5;
+	expect(stdfit_context_new(&context, 0, &options, &error), STDFIT_DOMAIN, "exponent");
+}
+
 static void the_flag_cancels(void **state)
 {
 	struct stdfit_options options = ggx_options();
@@ -471,6 +577,8 @@ int main(void)
 		cmocka_unit_test(a_fit_on_a_small_stack_recovers_its_parameters),
 		cmocka_unit_test(a_child_can_fit_on_one_thread),
 		cmocka_unit_test(samples_are_fitted_with_axes),
+		cmocka_unit_test(richer_models_are_those_of_the_internals),
+		cmocka_unit_test(richer_models_are_fitted),
 		cmocka_unit_test(the_flag_cancels),
 		cmocka_unit_test(an_algorithm_goes_by_its_name),
 	};

@@ -136,6 +136,12 @@ static void wrong_usage_is_refused(void **state)
 		{"a.binary --within 5%%", "for --within"},
 		{"a.binary --no-diffuse --no-specular", "leave nothing to fit"},
 		{"a.binary --no-specular --sigma 0.1", "--sigma means nothing"},
+		{"a.binary --no-specular --gaf correlated", "--gaf means nothing with --no-specular"},
+		{"a.binary --no-specular --fresnel schlick", "--fresnel means nothing with --no-specular"},
+		{"a.binary --no-specular --lambda 2f1", "--lambda means nothing with --no-specular"},
+		{"a.binary --no-specular --starts 3", "--starts means nothing with --no-specular"},
+		{"a.binary --ndf ggx,beckmann --lambda rational", "--lambda means nothing for these NDFs"},
+		{"a.binary --gaf v-groove --lambda rational", "--lambda means nothing with --gaf v-groove"},
 		{"a.binary --fresnel none --ior 1.5", "--ior means nothing"},
 		{"a.binary --ndf ggx,beckmann --gamma 3", "--gamma means nothing"},
 		{"a.binary --resume", "--resume needs -o"},
@@ -148,6 +154,8 @@ static void wrong_usage_is_refused(void **state)
 		{"eval a.binary --ks 1", "--ks needs --sigma"},
 		{"eval a.binary --ks 1 --sigma 0.1", "--ndf std needs --gamma"},
 		{"eval a.binary --ks 1 --sigma 0.1 --ndf ggx --gamma 3", "--ndf ggx has no --gamma"},
+		{"eval a.binary --kd 1 --lambda rational", "--lambda means nothing without --ks"},
+		{"eval a.binary --ks 1 --sigma 0.1 --ndf ggx --lambda rational", "--lambda means nothing for"},
 		{"eval a.binary --kd 1,2", "bad value '1,2' for --kd"},
 		{"eval a.binary --kd 1,2,3,4", "for --kd"},
 		{"eval a.binary --kd 1,,3", "for --kd"},
@@ -1019,6 +1027,28 @@ static void faults_of_the_data_are_told(void **state)
 	expect_error(1, "zero-is-missing");
 }
 
+static void another_G_is_told(void **state)
+{
+	static const char *const truth[] = {"uncorrelated", "correlated"};
+
+	(void)state;
+	for (int n = 0; n < 2; n++) {
+		char arguments[256];
+
+		snprintf(arguments, sizeof arguments,
+			 "synth g.binary --kd 0.1 --ks 0.3 --ndf ggx --sigma 0.3 --ior 1.6 --noise 0.1 --gaf %s",
+			 truth[n]);
+		stdfit(arguments);
+		expect_code(0);
+		stdfit("g.binary --ndf ggx -o g.csv");
+		expect_code(0);
+		struct csv_table table = read_table("g.csv");
+		assert_string_equal(table.row[0][RESULT_SUSPECTS], n ? "correlated" : "");
+		assert_true(n == (strstr(last.err, "--gaf correlated") != NULL));
+		csv_table_free(&table);
+	}
+}
+
 static void small_stacks_are_made_larger_or_told(void **state)
 {
 	static const struct {
@@ -1154,6 +1184,7 @@ int main(void)
 		cmocka_unit_test(how_certain_a_fit_is_stands_in_its_row),
 		cmocka_unit_test(within_takes_the_simplest),
 		cmocka_unit_test(faults_of_the_data_are_told),
+		cmocka_unit_test(another_G_is_told),
 		cmocka_unit_test(small_stacks_are_made_larger_or_told),
 		cmocka_unit_test(cells_leave_the_terminal_alone),
 		cmocka_unit_test(noise_follows_the_seed),

@@ -29,7 +29,7 @@ static void fixture_free(struct fixture *f)
 static void run(struct fixture *f, const struct compare_picture *picture)
 {
 	struct error error;
-	assert_int_equal(comparison_init(&f->c, &f->rows, picture != NULL, &error), STATUS_OK);
+	assert_int_equal(comparison_init(&f->c, &f->rows, picture != NULL, false, &error), STATUS_OK);
 	for (size_t start = 0, end; start < f->rows.n_rows; start = end) {
 		end = comparison_material_end(&f->rows, start);
 		assert_int_equal(
@@ -142,6 +142,32 @@ static void pictures_have_columns_of_their_own(void **state)
 	fixture_free(&f);
 }
 
+static void lines_go_by_gain(void **state)
+{
+	(void)state;
+	static const char *const want[] = {"b", "c", "a", "d"};
+	struct fixture f = fixture_make();
+	struct error error;
+	add_row(&f, "a", "std", "0.5");
+	add_row(&f, "a", "ggx", "0.25");
+	add_row(&f, "b", "std", "0.125");
+	add_row(&f, "b", "ggx", "0.25");
+	add_row(&f, "c", "std", "0.25");
+	add_row(&f, "c", "ggx", "0.25");
+	add_row(&f, "d", "std", "0.25");
+	assert_int_equal(comparison_init(&f.c, &f.rows, false, true, &error), STATUS_OK);
+	for (size_t start = 0, end; start < f.rows.n_rows; start = end) {
+		end = comparison_material_end(&f.rows, start);
+		assert_int_equal(comparison_add(&f.c, f.rows.row + start, end - start, NULL), STATUS_OK);
+	}
+	assert_int_equal(comparison_end(&f.c), STATUS_OK);
+	for (size_t i = 0; i < sizeof want / sizeof *want; i++)
+		assert_string_equal(f.c.table.row[i][0], want[i]);
+	assert_string_equal(f.c.table.row[4][0], "(mean)");
+	assert_string_equal(cell(&f, "b", "gain_over_ggx"), "50");
+	fixture_free(&f);
+}
+
 static void more_ndfs_than_there_are_is_an_error(void **state)
 {
 	(void)state;
@@ -152,7 +178,7 @@ static void more_ndfs_than_there_are_is_an_error(void **state)
 		snprintf(name, sizeof name, "ndf%d", i);
 		add_row(&f, "a", name, "0.5");
 	}
-	assert_int_equal(comparison_init(&f.c, &f.rows, false, &error), STATUS_UNSUPPORTED);
+	assert_int_equal(comparison_init(&f.c, &f.rows, false, false, &error), STATUS_UNSUPPORTED);
 	fixture_free(&f);
 }
 
@@ -163,6 +189,7 @@ int main(void)
 		cmocka_unit_test(worst_is_the_largest_error_and_the_smallest_gain),
 		cmocka_unit_test(floor_is_no_rival),
 		cmocka_unit_test(pictures_have_columns_of_their_own),
+		cmocka_unit_test(lines_go_by_gain),
 		cmocka_unit_test(more_ndfs_than_there_are_is_an_error),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

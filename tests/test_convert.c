@@ -340,7 +340,7 @@ static void noisy_samples_give_their_parameters_back(void **state)
 	assert_string_equal(last.out, "3\n");
 }
 
-/* Of a mirror on a goniometer nearly all that is measured is dark: a few entries, one above all, decide what the lobe is. */
+/* Of a mirror on a goniometer nearly all is dark: a few entries, one above all, decide what the lobe is. */
 static void one_bright_entry_is_not_lost(void **state)
 {
 	(void)state;

@@ -438,24 +438,71 @@ static void ranges_hold_the_value(void **state)
 	compare(&model, "values beyond the usual");
 }
 
-static void richer_models_are_refused(void **state)
+/* Three reflectances for F, a diffuse term of grazing directions, two lobes; each channel of its own. */
+static struct cook_torrance rich_model(const char *ndf, double gamma)
 {
-	struct cook_torrance model = make_model("ggx", 0.2, 2, 1.5);
-	struct export export;
-	struct error error;
-	const struct fit_options fit = fit_options_default();
+	struct cook_torrance model = shaped(ndf, 0.2, gamma);
+	static const double reflectance[3][F82_PARTS] = {{0.2, 0.3, 0.9}, {0.6, 0.4, 1}, {0.04, 0.05, 0.3}};
+
+	model.fresnel = FRESNEL_F82;
+	memcpy(model.reflectance, reflectance, sizeof reflectance);
+	memcpy(model.kg, (double[]){0.2, 0.05, 0.4}, sizeof model.kg);
+	model.grazing = 3.7;
+	memcpy(model.ks_second, (double[]){0.3, 0.8, 0.1}, sizeof model.ks_second);
+	assert_int_equal(ndf_init(&model.second, model.ndf.class, 0.37, 0.37, gamma > 2 ? 2.2 : gamma + 0.2),
+			 STATUS_OK);
+	return model;
+}
+
+static void shader_is_the_model_of_more_terms(void **state)
+{
+	static const struct {
+		const char *ndf;
+		double gamma;
+	} lobes[] = {{"ggx", 2}, {"beckmann", INFINITY}, {"std", 1.7}, {"std", 3}, {"gtr", 2.4}, {"low", 1.5}};
 
 	(void)state;
-	for (int i = 0; i < 3; i++) {
-		struct cook_torrance rich = model;
-		if (i == 0)
-			rich.fresnel = FRESNEL_F82;
-		else
-			memcpy(i == 1 ? rich.kg : rich.ks_second, (double[]){0.1, 0, 0}, sizeof rich.kg);
-		rich.second = model.ndf;
-		const struct export_source source = {.model = &rich, .fit = &fit};
-		assert_int_equal(export_prepare(&export, EXPORT_BRDF, &source, &error), STATUS_UNSUPPORTED);
+	for (size_t i = 0; i < sizeof lobes / sizeof *lobes; i++) {
+		struct cook_torrance model = rich_model(lobes[i].ndf, lobes[i].gamma);
+		compare(&model, lobes[i].ndf);
+		model.gaf = GAF_V_GROOVE;
+		model.fresnel = FRESNEL_DIELECTRIC;
+		memset(model.kg, 0, sizeof model.kg);
+		compare(&model, lobes[i].ndf);
+		memset(model.ks, 0, sizeof model.ks);
+		compare(&model, "the second lobe alone");
 	}
+	/* The second one may have axes of its own. */
+	struct cook_torrance model = rich_model("ggx", 2);
+	if (ndf_init(&model.second, model.ndf.class, 0.4, 0.2, 2) || ndf_turn(&model.second, 20))
+		abort();
+	compare(&model, "a second lobe with axes");
+}
+
+static void sliders_give_another_model_of_more_terms(void **state)
+{
+	const struct cook_torrance from = rich_model("std", 1.7);
+	struct cook_torrance to = from;
+
+	(void)state;
+	to.reflectance[0][0] = 0.5;
+	to.reflectance[1][1] = 0.1;
+	to.reflectance[2][2] = 0.9;
+	to.kg[1] = 0.6;
+	to.grazing = 5;
+	to.ks_second[2] = 0.7;
+	assert_int_equal(ndf_init(&to.second, to.ndf.class, 0.5, 0.5, 2.5), STATUS_OK);
+	compare_moved(&from,
+		      (struct move[]){{"f0_r", 0.5},
+				      {"f82_g", 0.1},
+				      {"f90_b", 0.9},
+				      {"kg_g", 0.6},
+				      {"exponent", 5},
+				      {"ks2_b", 0.7},
+				      {"sigma2", 0.5},
+				      {"gamma2", 2.5},
+				      {"", 0}},
+		      &to, "moved");
 }
 
 /* Constants that no float holds are refused, and nothing promised. */
@@ -525,6 +572,14 @@ static void glslang_takes_it(void **state)
 			if (system(command) != 0)
 				fail_msg("glslangValidator refuses %s", names[i]);
 		}
+	for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+		const struct cook_torrance rich = rich_model(names[i], 1.7);
+		char *rich_text = export_text(&rich);
+		write_fragment_shader(path, rich_text);
+		free(rich_text);
+		if (system(command) != 0)
+			fail_msg("glslangValidator refuses a model of more terms, %s", names[i]);
+	}
 	struct pwl pwl;
 	struct cook_torrance model = make_model("ggx", 0.2, 2, 1.5);
 	make_pwl(&pwl);
@@ -551,7 +606,8 @@ int main(void)
 		cmocka_unit_test(shader_is_the_model_with_one_term_only),
 		cmocka_unit_test(sliders_give_the_other_model),
 		cmocka_unit_test(ranges_hold_the_value),
-		cmocka_unit_test(richer_models_are_refused),
+		cmocka_unit_test(shader_is_the_model_of_more_terms),
+		cmocka_unit_test(sliders_give_another_model_of_more_terms),
 		cmocka_unit_test(out_of_range_is_refused),
 		cmocka_unit_test(glslang_takes_it),
 	};

@@ -320,6 +320,12 @@ static void what_is_no_table_of_nodes_is_told(void **state)
 static void an_ellipsoid_is_a_model(void **state)
 {
 	(void)state;
+	/* An angle turns what ndf and sample show, too. */
+	stdfit("ndf std --sigma 0.3,0.1 --gamma 3 --angle 30 --theta 20 --phi 50 --json");
+	expect_code(0);
+	const double D = json_number("D");
+	stdfit("ndf std --sigma 0.3,0.1 --gamma 3 --theta 20 --phi 20 --json");
+	check_rel(D, json_number("D"), 1e-13, "D of turned axes");
 	stdfit("synth tilted.csv " TILTED);
 	expect_code(0);
 	stdfit("eval tilted.csv --json " TILTED);

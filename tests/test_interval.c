@@ -2,7 +2,7 @@
 /* The intervals of a fit's parameters: at their ends, fits with the parameter fixed there find E at the percentage; the truth is
  * inside; two valleys are two intervals; an end that is none of the data's is open. */
 #include "check.h"
-#include "make_table.h"
+#include "make_scattered.h"
 #include "run_fit.h"
 
 static void run_intervals(const struct measurement *measurement, const struct fit_options *options, double percent,
@@ -148,6 +148,70 @@ static void two_valleys_are_two_intervals(void **state)
 	measurement_free(&other);
 }
 
+static double error_of_axes(const struct measurement *measurement, struct fit_options options, double sigma,
+			    double ratio)
+{
+	struct fit_result r;
+
+	options.sigma = sigma * sqrt(ratio);
+	options.sigma_y = sigma / sqrt(ratio);
+	run_fit(measurement, &options, &r);
+	return r.error;
+}
+
+/* Of a ratio of the axes, over all sigma: by thirds. */
+static double error_of_ratio(const struct measurement *measurement, const struct fit_options *options, double sigma,
+			     double ratio)
+{
+	double lo = sigma / 1.1, hi = sigma * 1.1;
+
+	for (int i = 0; i < 16; i++) {
+		const double a = lo + (hi - lo) / 3, b = hi - (hi - lo) / 3;
+
+		if (error_of_axes(measurement, *options, a, ratio) < error_of_axes(measurement, *options, b, ratio))
+			hi = b;
+		else
+			lo = a;
+	}
+	return error_of_axes(measurement, *options, lo, ratio);
+}
+
+static void axes_have_intervals(void **state)
+{
+	struct cook_torrance m = make_model("ggx", 0.25, 2, 1.5);
+	struct fit_options options = options_for("ggx");
+	struct fit_result r, other;
+
+	(void)state;
+	assert_int_equal(ndf_init(&m.ndf, ndf_find("ggx"), 0.3, 0.2, 2), STATUS_OK);
+	assert_int_equal(ndf_turn(&m.ndf, 89.5), STATUS_OK);
+	struct measurement measurement = make_scattered(&m, 1500, 0.1, 5);
+
+	options.anisotropic = true;
+	options.ior = 1.5;
+	run_intervals(&measurement, &options, 1, &r);
+	const double sigma = sqrt(r.model.ndf.sigma_x * r.model.ndf.sigma_y);
+	const struct interval *angle = &r.interval[INTERVAL_ANGLE].at[0], *ratio = &r.interval[INTERVAL_RATIO].at[0];
+
+	/* The ends of the angle's are next to each other, whether the fit's is 89 or -89. */
+	check_between(angle->hi - angle->lo, 0.5, 20, "angle_hi - angle_lo");
+	check_between(fabs(r.model.ndf.angle), 85, 90, "angle");
+	assert_true(fmax(fabs(angle->lo), fabs(angle->hi)) > 90 && !angle->lo_open && !angle->hi_open);
+	check_between(ratio->lo, 1, 1.5, "ratio_lo");
+	check_between(ratio->hi, 1.5, 2, "ratio_hi");
+	for (int e = 0; e < 2; e++) {
+		struct fit_options fixed = options;
+
+		fixed.angle = remainder(e ? angle->hi : angle->lo, 180);
+		run_fit(&measurement, &fixed, &other);
+		check_between(100 * (other.error / r.error - 1), 0.97, 1.03, "angle");
+		check_between(
+			100 * (error_of_ratio(&measurement, &options, sigma, e ? ratio->hi : ratio->lo) / r.error - 1),
+			0.97, 1.03, "ratio");
+	}
+	measurement_free(&measurement);
+}
+
 /* Twenty shapes with noise: at so small a percentage the noise itself fills much of the interval. */
 static void the_truth_is_inside(void **state)
 {
@@ -183,6 +247,7 @@ int main(void)
 		cmocka_unit_test(the_fit_is_inside_and_fixed_parameters_have_none),
 	};
 	const struct CMUnitTest long_tests[] = {
+		cmocka_unit_test(axes_have_intervals),
 		cmocka_unit_test(fits_with_the_parameter_fixed_find_the_percentage),
 		cmocka_unit_test(what_the_data_do_not_tell_is_open_at_both_ends),
 		cmocka_unit_test(two_valleys_are_two_intervals),

@@ -647,6 +647,32 @@ static void alta_values_are_divided_by_the_cosine_of_the_view(void **state)
 	measurement_free(&m);
 }
 
+/* What is no number, or below the horizon, is counted in every format; equal directions stay two samples. */
+static void every_format_counts_what_it_leaves_out(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *name, *text;
+	} files[] = {
+		{"x.csv", "theta_i,theta_o,value\n10,20,1\n10,20,3\n10,20,nan\n10,20,inf\n10,nan,1\n10,95,1\n"
+			  "10,20,-1\n"},
+		{"x.dat", "#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n#PARAM_OUT INV_STERADIAN\n.2 .1 2 1\n.2 .1 2 3\n"
+			  ".2 .1 2 nan\n.2 .1 2 inf\n.2 .1 nan 1\n1.6 .1 2 1\n.2 .1 2 -1\n"},
+		{"x.brdf", "3\n400 500 700\n.1 0 .2 0 1 1 1\n.1 0 .2 0 3 3 3\n.1 0 .2 0 1 nan 1\n.1 0 .2 0 1 inf 1\n"
+			   ".1 nan .2 0 1 1 1\n.1 0 1.6 0 1 1 1\n.1 0 .2 0 1 -1 1\n"}};
+	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+		struct measurement m = read_text(files[i].name, files[i].text);
+		assert_int_equal(m.scattered->n, 2);
+		check_abs((double)m.scattered->value[1][0], 1, 1e-6, files[i].name);
+		check_abs((double)m.scattered->value[1][1], 3, 1e-6, files[i].name);
+		assert_true(m.scattered->solid_angle[0] == m.scattered->solid_angle[1]);
+		assert_int_equal(m.n_nonfinite, 3);
+		assert_int_equal(m.n_below_horizon, 1);
+		assert_int_equal(m.n_negative, 1);
+		measurement_free(&m);
+	}
+}
+
 static void bad_alta_is_refused_with_its_line(void **state)
 {
 	(void)state;
@@ -743,6 +769,16 @@ static void zemax_angles_are_about_the_mirror_direction(void **state)
 	measurement_free(&m);
 }
 
+static void zemax_leaves_out_what_is_no_number(void **state)
+{
+	(void)state;
+	struct measurement m =
+		read_text("x.bsdf", ZEMAX_HEAD "1 2 nan\n1 4 5\n1 6 7\n7 inf 9\n7 -1 11\n7 12 13\nDataEnd\n");
+	assert_int_equal(m.n_nonfinite, 2);
+	assert_int_equal(m.n_negative, 1);
+	measurement_free(&m);
+}
+
 static void zemax_tristimulus_values_become_rgb(void **state)
 {
 	(void)state;
@@ -779,6 +815,7 @@ static void bad_zemax_is_refused_with_its_line(void **state)
 		{"SampleRotation 1\n0\nSpectralContent RGB\n",
 		 "line 3: expected SpectralContent Monochrome or XYZ, found 'RGB'"},
 		{"SampleRotation 1\n0\n", "expected DataBegin, found the end of the file"},
+		{"#Measured on a sunny day\nIt was wh", "line 2: expected DataBegin, found the end of the file"},
 		{ZEMAX_HEAD "1 2 3\n", "line 17: expected a row of values, found the end of the file"},
 		{ZEMAX_HEAD "1 2\n", "line 17: expected 3 values, found 2"},
 		{ZEMAX_HEAD "1 2 3 4\n", "line 17: expected 3 values, found 4"},
@@ -880,10 +917,12 @@ int main(void)
 		cmocka_unit_test(alta_half_and_difference_angles_are_understood),
 		cmocka_unit_test(alta_cosines_and_fewer_angles_are_understood),
 		cmocka_unit_test(alta_values_are_divided_by_the_cosine_of_the_view),
+		cmocka_unit_test(every_format_counts_what_it_leaves_out),
 		cmocka_unit_test(bad_alta_is_refused_with_its_line),
 		cmocka_unit_test(cornell_rows_are_spectra),
 		cmocka_unit_test(bad_cornell_is_refused_with_its_line),
 		cmocka_unit_test(zemax_angles_are_about_the_mirror_direction),
+		cmocka_unit_test(zemax_leaves_out_what_is_no_number),
 		cmocka_unit_test(zemax_tristimulus_values_become_rgb),
 		cmocka_unit_test(bad_zemax_is_refused_with_its_line),
 		cmocka_unit_test(the_content_tells_the_format),

@@ -324,15 +324,15 @@ static void wrong_fields_are_refused_by_name(void **state)
 		switch (fault) {
 		case 0:
 			set_64(record_of(&file, "sigma") + OFFSET, get_64(record_of(&file, "ndf") + OFFSET) + 4);
-			words = "fields 'ndf' and 'sigma' overlap";
+			words = "fields 'ndf' and 'sigma' overlap, at bytes ";
 			break;
 		case 1:
 			set_64(record_of(&file, "ndf") + OFFSET, 20);
-			words = "field 'ndf' overlaps the header";
+			words = "field 'ndf' overlaps the header, at byte 20";
 			break;
 		case 2:
 			set_64(record_of(&file, "vndf") + SHAPE + 8, UINT64_MAX / 8);
-			words = "field 'vndf': a dimension of 2305843009213693951 is impossible";
+			words = "field 'vndf': a dimension of 2305843009213693951 does not fit into a file of";
 			break;
 		case 3:
 			set_64(record_of(&file, "vndf") + SHAPE + 8, 0);

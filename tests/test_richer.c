@@ -2,6 +2,7 @@
 /* Models with more terms than two: known parameters come back, a richer model never loses, rows and JSON bring them back. */
 #include "fit/results/result.h"
 #include "fit/search/options_check.h"
+#include "fit/search/within.h"
 #include "make_scattered.h"
 #include "run_fit.h"
 
@@ -77,8 +78,10 @@ static void parameters_come_back(void **state)
 		}
 		if (kind == BURLEY)
 			check_rel(r.model.grazing, 3, 0.1, "exponent");
-		if (kind == TWO_LOBES)
+		if (kind == TWO_LOBES) {
 			check_rel(r.model.second.sigma_x, 0.6, 0.03, "sigma of the second lobe");
+			assert_false(r.undetermined & (BOUND_SECOND_SIGMA | BOUND_SECOND_GAMMA));
+		}
 		measurement_free(&measurement);
 	}
 }
@@ -116,29 +119,39 @@ static void two_lobes_share_the_bound_of_one(void **state)
 	measurement_free(&measurement);
 }
 
-/* Data of another kind than each model: what the simpler one reaches is never lost. */
+/* Data of another kind than each model: what the simpler one reaches is never lost, gray or not. */
 static void a_richer_model_never_loses(void **state)
 {
 	const struct cook_torrance truth = make_model("gtr", 0.2, 1.4, 1.6);
 	struct measurement measurement = make_scattered(&truth, 1500, 0.1, 5);
 
 	(void)state;
-	for (enum kind kind = 0; kind < KINDS; kind++) {
-		struct fit_options o = options_for("ggx");
+	for (int gray = 0; gray < 2; gray++)
+		for (enum kind kind = 0; kind < KINDS; kind++) {
+			struct fit_options o = options_for("ggx");
 
-		if (kind == F82)
-			o.fresnel = FRESNEL_SCHLICK;
-		const double simpler = run(&measurement, &o).error;
+			o.gray = gray;
+			if (kind == F82)
+				o.fresnel = FRESNEL_SCHLICK;
+			const double simpler = run(&measurement, &o).error;
 
-		ask_for(kind, &o);
-		assert_true(run(&measurement, &o).error <= simpler);
-		o.grazing = true;
-		if (kind == BURLEY)
-			o.grazing_exponent = 5;
-		const double with_grazing = run(&measurement, &o).error;
+			ask_for(kind, &o);
+			const struct fit_result r = run(&measurement, &o);
 
-		assert_true(with_grazing <= simpler);
-	}
+			assert_true(r.error <= simpler);
+			for (int c = 1; c < 3 && gray; c++) {
+				assert_true(r.model.kd[c] == r.model.kd[0] && r.model.ks[c] == r.model.ks[0]);
+				assert_true(r.model.kg[c] == r.model.kg[0]);
+				assert_true(r.model.ks_second[c] == r.model.ks_second[0]);
+				for (int i = 0; i < F82_PARTS; i++)
+					assert_true(r.model.reflectance[c][i] == r.model.reflectance[0][i]);
+			}
+			o.grazing = true;
+			o.lobes = kind == F82 ? 1 : 2;
+			if (kind == BURLEY)
+				o.grazing_exponent = 5;
+			assert_true(run(&measurement, &o).error <= (kind == BURLEY ? simpler : r.error));
+		}
 	measurement_free(&measurement);
 }
 
@@ -182,6 +195,58 @@ static void rows_bring_models_back(void **state)
 	}
 }
 
+/* Where the data are of one lobe, what noise makes of a second has no shape that they determine. */
+static void a_second_lobe_of_noise_is_undetermined(void **state)
+{
+	const struct cook_torrance truth = make_model("ggx", 0.2, 2, 1.5);
+	struct measurement measurement = make_scattered(&truth, 30000, 0.02, 5);
+	struct fit_options o = options_for("ggx");
+
+	(void)state;
+	o.lobes = 2;
+	o.ior = 1.5;
+	const struct fit_result r = run(&measurement, &o);
+
+	assert_true(cook_torrance_has_second(&r.model));
+	assert_true(r.undetermined & BOUND_SECOND_SIGMA);
+	measurement_free(&measurement);
+}
+
+/* Of the whole family the model that made the data is chosen, and one richer only where richer is let in. */
+static void within_finds_the_model_of_the_data(void **state)
+{
+	static const unsigned all = WITHIN_BURLEY | WITHIN_F82 | WITHIN_TWO_LOBES;
+	const struct fit_options options = options_for("ggx");
+	struct fit_context *context;
+	struct error error;
+
+	(void)state;
+	assert_int_equal(fit_context_new(&context, 0, &options), STATUS_OK);
+	for (enum kind kind = 0; kind <= KINDS; kind++) {
+		struct cook_torrance truth = truth_of(kind == KINDS ? BURLEY : kind, "ggx");
+		struct fit_options chosen;
+		struct fit_result r, plain;
+
+		for (int c = 0; c < 3 && kind == KINDS; c++) {
+			truth.kg[c] = truth.ks[c] = 0;
+			truth.kd[c] = 0.3;
+		}
+		struct measurement measurement = make_scattered(&truth, 1500, 0.01, 11);
+
+		assert_int_equal(within_run(context, &measurement, &options, all, 5, &chosen, &r, &error), STATUS_OK);
+		assert_true(chosen.specular == (kind != KINDS) && chosen.gray == (kind == KINDS));
+		assert_true(chosen.grazing == (kind == BURLEY));
+		assert_true(chosen.lobes == (kind == TWO_LOBES ? 2 : 1));
+		assert_true((chosen.fresnel == FRESNEL_F82) == (kind == F82));
+		check_between(r.error, 0.006, 0.009, "E");
+		assert_int_equal(within_run(context, &measurement, &options, 0, 5, &chosen, &plain, &error), STATUS_OK);
+		assert_true(!chosen.grazing && chosen.lobes == 1 && chosen.fresnel != FRESNEL_F82);
+		assert_true(kind == KINDS || plain.error > 1.05 * r.error);
+		measurement_free(&measurement);
+	}
+	fit_context_free(context);
+}
+
 static void what_does_not_go_together_is_refused(void **state)
 {
 	struct error error;
@@ -213,6 +278,8 @@ int main(void)
 		cmocka_unit_test(two_lobes_share_the_bound_of_one),
 		cmocka_unit_test(a_richer_model_never_loses),
 		cmocka_unit_test(rows_bring_models_back),
+		cmocka_unit_test(a_second_lobe_of_noise_is_undetermined),
+		cmocka_unit_test(within_finds_the_model_of_the_data),
 		cmocka_unit_test(what_does_not_go_together_is_refused),
 	};
 

@@ -53,13 +53,17 @@ enum stdfit_status api_gaf(const char *name, enum gaf *gaf, struct stdfit_error 
 	return name && gaf_find(name, gaf) != STATUS_OK ? api_unknown(error, "gaf", name) : STDFIT_OK;
 }
 
-enum stdfit_status api_fresnel(const char *name, enum fresnel *fresnel, struct stdfit_error *error)
+enum stdfit_status api_model_fresnel(const char *name, enum fresnel *fresnel, struct stdfit_error *error)
 {
 	*fresnel = FRESNEL_DIELECTRIC;
-	/* The three reflectances of f82 have no place in the structs. */
-	const bool known = !name || (fresnel_find(name, fresnel) == STATUS_OK && *fresnel != FRESNEL_F82);
+	return name && fresnel_find(name, fresnel) != STATUS_OK ? api_unknown(error, "fresnel", name) : STDFIT_OK;
+}
 
-	return known ? STDFIT_OK : api_unknown(error, "fresnel", name);
+enum stdfit_status api_fresnel(const char *name, enum fresnel *fresnel, struct stdfit_error *error)
+{
+	const enum stdfit_status status = api_model_fresnel(name, fresnel, error);
+
+	return status == STDFIT_OK && *fresnel == FRESNEL_F82 ? api_unknown(error, "fresnel", name) : status;
 }
 
 enum stdfit_status api_bins(const char *name, enum bins *bins, struct stdfit_error *error)

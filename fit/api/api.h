@@ -25,9 +25,10 @@ MUST_CHECK enum stdfit_status api_unknown(struct stdfit_error *error, const char
 /* api_end - the public form of an internal end; `why` may be empty. */
 enum stdfit_status api_end(struct stdfit_error *error, enum status status, const struct error *why);
 
-/* api_names - G and F of their names. */
+/* api_names - G and F of their names; api_fresnel knows the forms that are functions of n and k, api_model_fresnel f82 too. */
 MUST_CHECK enum stdfit_status api_gaf(const char *name, enum gaf *gaf, struct stdfit_error *error);
 MUST_CHECK enum stdfit_status api_fresnel(const char *name, enum fresnel *fresnel, struct stdfit_error *error);
+MUST_CHECK enum stdfit_status api_model_fresnel(const char *name, enum fresnel *fresnel, struct stdfit_error *error);
 MUST_CHECK enum stdfit_status api_bins(const char *name, enum bins *bins, struct stdfit_error *error);
 
 /* api_directions - whether n directions are there and unit vectors. */

@@ -8,7 +8,10 @@
 
 _Static_assert((int)STDFIT_PARAMETER_SIGMA == BOUND_SIGMA && (int)STDFIT_PARAMETER_GAMMA == BOUND_GAMMA &&
 		       (int)STDFIT_PARAMETER_N == BOUND_IOR && (int)STDFIT_PARAMETER_KD == BOUND_KD_R &&
-		       (int)STDFIT_PARAMETER_KS == BOUND_KS_R && (int)STDFIT_PARAMETER_K == BOUND_K,
+		       (int)STDFIT_PARAMETER_KS == BOUND_KS_R && (int)STDFIT_PARAMETER_K == BOUND_K &&
+		       (int)STDFIT_PARAMETER_EXPONENT == BOUND_GRAZING &&
+		       (int)STDFIT_PARAMETER_SIGMA2 == BOUND_SECOND_SIGMA &&
+		       (int)STDFIT_PARAMETER_GAMMA2 == BOUND_SECOND_GAMMA,
 	       "the public bits are the internal ones");
 
 struct stdfit_context {
@@ -24,6 +27,8 @@ struct stdfit_options stdfit_options_default(void)
 				       .sigma = NAN,
 				       .gamma = NAN,
 				       .n = NAN,
+				       .exponent = NAN,
+				       .lobes = o.lobes,
 				       .time_s = o.time_s,
 				       .diffuse = 1,
 				       .specular = 1,
@@ -32,8 +37,8 @@ struct stdfit_options stdfit_options_default(void)
 
 const char *stdfit_parameter_name(unsigned bit)
 {
-	static const char *const name[] = {"sigma", "gamma", "n",    "kd_r", "kd_g", "kd_b",
-					   "ks_r",  "ks_g",  "ks_b", "k",    "angle"};
+	static const char *const name[] = {"sigma", "gamma", "n", "kd_r",  "kd_g",     "kd_b",   "ks_r",
+					   "ks_g",  "ks_b",  "k", "angle", "exponent", "sigma2", "gamma2"};
 
 	for (unsigned i = 0; i < sizeof name / sizeof *name; i++)
 		if (bit == 1u << i)
@@ -69,7 +74,7 @@ static enum stdfit_status read_names(const struct stdfit_options *options, struc
 	if (status == STDFIT_OK)
 		status = api_gaf(options->gaf, &inner->criterion.gaf, error);
 	if (status == STDFIT_OK)
-		status = api_fresnel(options->fresnel, &inner->fresnel, error);
+		status = api_model_fresnel(options->fresnel, &inner->fresnel, error);
 	if (status == STDFIT_OK)
 		status = api_bins(options->bins, &inner->criterion.bins, error);
 	if (status != STDFIT_OK)
@@ -125,6 +130,9 @@ static enum stdfit_status read_options(const struct stdfit_options *options, str
 	inner->specular = options->specular;
 	inner->gray = options->gray;
 	inner->anisotropic = options->anisotropic;
+	inner->grazing = options->burley;
+	inner->grazing_exponent = options->exponent;
+	inner->lobes = options->lobes;
 	inner->starts = options->starts;
 	inner->threads = options->threads;
 	inner->seed = options->seed;
@@ -177,6 +185,25 @@ static struct stdfit_metrics public_metrics(const struct fit_metrics *m)
 				       .entries = m->samples};
 }
 
+/* What richer models have; 0 where the model has none of it. */
+static void public_terms(const struct cook_torrance *from, struct stdfit_model *to)
+{
+	for (int c = 0; c < 3 && from->fresnel == FRESNEL_F82; c++) {
+		to->f0[c] = from->reflectance[c][0];
+		to->f82[c] = from->reflectance[c][1];
+		to->f90[c] = from->reflectance[c][2];
+	}
+	if (cook_torrance_has_grazing(from)) {
+		memcpy(to->kg, from->kg, sizeof from->kg);
+		to->exponent = from->grazing;
+	}
+	if (cook_torrance_has_second(from)) {
+		memcpy(to->ks2, from->ks_second, sizeof from->ks_second);
+		to->sigma2 = from->second.sigma_x;
+		to->gamma2 = from->second.gamma;
+	}
+}
+
 /* The public form of a result, whose table moves there. STATUS_NO_MEMORY. */
 static enum status hand_over(struct fit_result *from, struct stdfit_result *to)
 {
@@ -206,6 +233,7 @@ static enum status hand_over(struct fit_result *from, struct stdfit_result *to)
 	to->model.k = m->k;
 	memcpy(to->model.kd, m->kd, sizeof m->kd);
 	memcpy(to->model.ks, m->ks, sizeof m->ks);
+	public_terms(m, &to->model);
 	to->distribution = calloc(1, sizeof *to->distribution);
 	if (!to->distribution)
 		return STATUS_NO_MEMORY;

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "fit/api/api.h"
+#include "fit/error/objective.h"
 #include "src/energy.h"
 #include "src/halfdiff.h"
 #include <math.h>
+#include <string.h>
 
 /* Beyond these nothing is promised of F, and of the fits' factors. */
 #define INDEX_MAX 1e75
@@ -21,6 +23,56 @@ enum stdfit_status api_index(enum fresnel fresnel, double n, double k, struct st
 	return STDFIT_OK;
 }
 
+static bool is_within(const double value[3], double most)
+{
+	return value[0] >= 0 && value[0] <= most && value[1] >= 0 && value[1] <= most && value[2] >= 0 &&
+	       value[2] <= most;
+}
+
+/* The second lobe of a model, of the class of the first. */
+static enum stdfit_status set_second(const struct stdfit_model *model, struct cook_torrance *inner,
+				     struct stdfit_error *error)
+{
+	const struct ndf_class *class = inner->ndf.class;
+	const struct shape shape = {.sigma = model->sigma2,
+				    .gamma = ndf_has_gamma(class) ? model->gamma2 : inner->ndf.gamma};
+
+	memcpy(inner->ks_second, model->ks2, sizeof inner->ks_second);
+	if (!cook_torrance_has_second(inner))
+		return STDFIT_OK;
+	if (ndf_is_tabulated(class))
+		return api_fail(error, STATUS_UNSUPPORTED, "a second lobe needs an NDF with sigma");
+	if (!(shape.sigma >= NDF_SIGMA_MIN && shape.sigma <= NDF_SIGMA_MAX) ||
+	    shape_ndf(&shape, class, LAMBDA_EXACT, &inner->second) != STATUS_OK)
+		return api_fail(error, STATUS_DOMAIN, "%s takes neither sigma2 %g nor gamma2 %g, or one of them not",
+				ndf_name(class), model->sigma2, model->gamma2);
+	return STDFIT_OK;
+}
+
+/* What richer models have. */
+static enum stdfit_status set_terms(const struct stdfit_model *model, struct cook_torrance *inner,
+				    struct stdfit_error *error)
+{
+	const bool f82 = inner->fresnel == FRESNEL_F82;
+
+	if (!is_within(model->kg, FIT_FACTOR_MAX) || !is_within(model->ks2, FIT_FACTOR_MAX))
+		return api_fail(error, STATUS_DOMAIN, "expected kg and ks2 in [0, %g]", FIT_FACTOR_MAX);
+	if (f82 && !(is_within(model->f0, 1) && is_within(model->f82, 1) && is_within(model->f90, 1)))
+		return api_fail(error, STATUS_DOMAIN, "expected f0, f82 and f90 in [0, 1]");
+	memcpy(inner->kg, model->kg, sizeof inner->kg);
+	inner->grazing = model->exponent;
+	if (cook_torrance_has_grazing(inner) &&
+	    !(model->exponent >= FIT_GRAZING_MIN && model->exponent <= FIT_GRAZING_MAX))
+		return api_fail(error, STATUS_DOMAIN, "expected exponent in [%g, %g], found %g", FIT_GRAZING_MIN,
+				FIT_GRAZING_MAX, model->exponent);
+	for (int c = 0; c < 3 && f82; c++) {
+		inner->reflectance[c][0] = model->f0[c];
+		inner->reflectance[c][1] = model->f82[c];
+		inner->reflectance[c][2] = model->f90[c];
+	}
+	return set_second(model, inner, error);
+}
+
 enum stdfit_status api_model(const struct stdfit_model *model, const struct stdfit_ndf *ndf,
 			     struct cook_torrance *inner, struct stdfit_error *error)
 {
@@ -34,9 +86,10 @@ enum stdfit_status api_model(const struct stdfit_model *model, const struct stdf
 	*inner = (struct cook_torrance){.ndf = *distribution, .n = model->n, .k = model->k};
 	status = api_gaf(model->gaf, &inner->gaf, error);
 	if (status == STDFIT_OK)
-		status = api_fresnel(model->fresnel, &inner->fresnel, error);
+		status = api_model_fresnel(model->fresnel, &inner->fresnel, error);
 	if (status == STDFIT_OK)
-		status = api_index(inner->fresnel, model->n, model->k, error);
+		status = fresnel_has_ior(inner->fresnel) ? api_index(inner->fresnel, model->n, model->k, error)
+							 : STDFIT_OK;
 	for (int c = 0; c < 3 && status == STDFIT_OK; c++) {
 		inner->kd[c] = model->kd[c];
 		inner->ks[c] = model->ks[c];
@@ -45,7 +98,7 @@ enum stdfit_status api_model(const struct stdfit_model *model, const struct stdf
 			status = api_fail(error, STATUS_DOMAIN, "expected kd and ks in [0, %g], found %g and %g",
 					  FIT_FACTOR_MAX, model->kd[c], model->ks[c]);
 	}
-	return status;
+	return status == STDFIT_OK ? set_terms(model, inner, error) : status;
 }
 
 enum stdfit_status api_isotropic(const struct ndf *ndf, struct stdfit_error *error)

@@ -130,7 +130,9 @@ const struct option_spec option_specs[] = {
 	{"sigma", 0, KIND_SIGMA, SEARCHES, RECORDED, "S|SX,SY", "fix the roughness; with --anisotropic along both axes",
 	 AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
 	{"anisotropic", 0, KIND_ON, AXES | SOURCES, RECORDED_ANISOTROPIC, NULL,
-	 "scattered entries: search sigma_x, sigma_y and the angle of their axes, too, from the isotropic fit on",
+	 "scattered entries: search sigma_x, sigma_y and the angle of their axes, too, from the isotropic fit on; of "
+	 "the "
+	 "ellipsoid also its tilt",
 	 AT(fit.anisotropic), 0, 0},
 	{"angle", 0, KIND_NUMBER, AXES, RECORDED_ANISOTROPIC, "DEG",
 	 "with --anisotropic: fix the azimuth of the axis of sigma_x", AT(fit.angle), -360, 360},
@@ -157,7 +159,9 @@ const struct option_spec option_specs[] = {
 	{"starts", 0, KIND_INT, FITS, RECORDED, "N", "more searches, from random shapes", AT(fit.starts), 0, 100000},
 	{"seed", 0, KIND_SEED, SEARCHES, RECORDED, "N", "seed of the random shapes", AT(fit.seed), 0, 0},
 	{"within", 0, KIND_PERCENT, FIT, RECORDED_WITHIN, "P%",
-	 "per material only the simplest model whose error is within P% of the best", AT(within), 0, 1000},
+	 "per material only the simplest model whose error is within P% of the best, from a gray Lambert term to two "
+	 "coloured lobes; --lobes, --diffuse or --fresnel given keeps out what is richer in that",
+	 AT(within), 0, 1000},
 	{"intervals", 0, KIND_PERCENT, FIT | REPORT, RECORDED_GIVEN, "P%",
 	 "how certain the shape is: between which values sigma, gamma, n ... each may lie, the others refitted, while "
 	 "the error stays within P% of the best; 1 is a good choice",
@@ -212,6 +216,8 @@ const struct option_spec option_specs[] = {
 	{"seed", 0, KIND_SEED, SYNTH, NOT_RECORDED, "N", "seed of the noise", AT(fit.seed), 0, 0},
 	{"sigma", 0, KIND_WORD, NDF | SAMPLE, NOT_RECORDED, "SX[,SY]", "roughness, along x and y if the NDF has two",
 	 AT(sigma_words), 0, 0},
+	{"angle", 0, KIND_NUMBER, NDF | SAMPLE, NOT_RECORDED, "DEG", "azimuth of the first axis; 0 if not given",
+	 AT(fit.angle), -360, 360},
 	{"gamma", 0, KIND_WORD, NDF | SAMPLE, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann)",
 	 AT(gamma_words), 0, 0},
 	{"params", 0, KIND_WORD, NDF | SAMPLE | MODEL | SOURCES, NOT_RECORDED, "P",
@@ -235,6 +241,14 @@ const struct option_spec option_specs[] = {
 	{"pictures", 0, KIND_ON, COMPARE, NOT_RECORDED, NULL,
 	 "render each model and its measured table, too, and show delta E and SSIM of the pictures", AT(pictures), 0,
 	 0},
+	{"models", 0, KIND_ON, COMPARE, NOT_RECORDED, NULL,
+	 "instead of NDFs compare models of the first NDF, std if none is named, from a gray Lambert term to two "
+	 "coloured "
+	 "lobes: parameters, error, gain over the paper's model in %, delta E, SSIM and seconds of each",
+	 AT(models), 0, 0},
+	{"sort", 0, KIND_SORT, COMPARE, NOT_RECORDED, "ORDER",
+	 "materials by name, or by how much STD gains over GGX, with --models the best model over the paper's",
+	 AT(sort_by_gain), 0, 0},
 	{"output", 'o', KIND_TEXT, RENDER, NOT_RECORDED, "FILE",
 	 "the picture: FILE.png (sRGB) or FILE.pfm (linear), - for standard output", AT(picture), 0, 0},
 	{"environment", 'e', KIND_TEXT, RENDER | REPORT, NOT_RECORDED, "NAME",
@@ -268,8 +282,10 @@ const struct option_spec option_specs[] = {
 _Static_assert(sizeof option_specs / sizeof *option_specs <= OPTIONS_MAX,
 	       "struct options.given has an entry per option");
 
+/* Of values that are false and true. */
 static const char *const diffuse_name[] = {"lambert", "burley"};
 static const char both_bins[] = "both";
+static const char *const sort_name[] = {"name", "gain"};
 
 const char *option_choice(enum option_kind kind, int i)
 {
@@ -288,6 +304,8 @@ const char *option_choice(enum option_kind kind, int i)
 		return i < FRESNEL_COUNT ? fresnel_name((enum fresnel)i) : NULL;
 	case KIND_DIFFUSE:
 		return i < 2 ? diffuse_name[i] : NULL;
+	case KIND_SORT:
+		return i < 2 ? sort_name[i] : NULL;
 	case KIND_WEIGHT:
 	case KIND_WEIGHTS:
 		return i < WEIGHT_COUNT ? weight_name((enum weight)i) : NULL;
@@ -313,12 +331,12 @@ const char *option_choice(enum option_kind kind, int i)
 	}
 }
 
-static enum status diffuse_find(const char *text, bool *burley)
+static enum status either_find(const char *const names[2], const char *text, bool *second)
 {
-	const int i = names_find(diffuse_name, 2, text);
+	const int i = names_find(names, 2, text);
 	if (i < 0)
 		return STATUS_DOMAIN;
-	*burley = i == 1;
+	*second = i == 1;
 	return STATUS_OK;
 }
 
@@ -343,7 +361,9 @@ static enum status choice_find(enum option_kind kind, const char *text, void *va
 	case KIND_FRESNEL:
 		return fresnel_find(text, value);
 	case KIND_DIFFUSE:
-		return diffuse_find(text, value);
+		return either_find(diffuse_name, text, value);
+	case KIND_SORT:
+		return either_find(sort_name, text, value);
 	case KIND_WEIGHT:
 		return weight_find(text, value);
 	case KIND_QUANTITY:
@@ -701,6 +721,9 @@ void option_write(FILE *file, const struct options *options, const struct option
 		break;
 	case KIND_DIFFUSE:
 		fputs(diffuse_name[*(const bool *)value], file);
+		break;
+	case KIND_SORT:
+		fputs(sort_name[*(const bool *)value], file);
 		break;
 	case KIND_WEIGHT:
 		fputs(weight_name(*(const enum weight *)value), file);

@@ -28,6 +28,7 @@ enum option_kind {
 	KIND_LAMBDA_OF_ANY, /* that of pl, too */
 	KIND_FRESNEL,
 	KIND_DIFFUSE, /* bool: whether burley, not lambert */
+	KIND_SORT,    /* bool: whether gain, not name */
 	KIND_WEIGHT,
 	KIND_WEIGHTS, /* several of them, separated by commas: weight and n_weights; the first is fit.criterion.weight */
 	KIND_BINS,

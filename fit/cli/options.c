@@ -497,7 +497,28 @@ static bool has_tabulated(const struct fit_options *fit)
 	return false;
 }
 
-/* Combinations in which some option would be ignored, or nothing could come out. */
+/* Whether some NDF takes another form of Lambda than the exact one. */
+static bool any_has_lambda_forms(const struct fit_options *fit)
+{
+	for (int i = 0; i < fit->n_ndf; i++)
+		if (ndf_is_student_t(fit->ndf[i]))
+			return true;
+	return false;
+}
+
+static int check_lambda(const struct options *options)
+{
+	const struct fit_options *fit = &options->fit;
+	if (fit->lambda == LAMBDA_EXACT)
+		return -1;
+	if (!any_has_lambda_forms(fit))
+		return options_usage(options->command, "--lambda means nothing for these NDFs");
+	if (fit->criterion.gaf == GAF_V_GROOVE)
+		return options_usage(options->command,
+				     "--lambda means nothing with --gaf v-groove, which has no Lambda");
+	return -1;
+}
+
 /* Only a conductor's n may be below 1. */
 static int low_index(const struct options *options)
 {
@@ -506,24 +527,17 @@ static int low_index(const struct options *options)
 			     options->fit.ior);
 }
 
-int options_check_fit(const struct options *options)
+/* Options of the specular term that it does not have, or where there is none. */
+static int check_specular(const struct options *options)
 {
 	const struct fit_options *fit = &options->fit;
-	struct error why = {""};
-	const enum fit_rule broken = fit_options_rule(fit, &why);
-	if (broken == FIT_RULE_TERMS)
-		return options_usage(options->command, "--no-diffuse and --no-specular leave nothing to fit");
-	static const char *const shape[] = {"sigma", "gamma", "ior"};
-	for (size_t i = 0; i < sizeof shape / sizeof *shape; i++)
-		if (!fit->specular && options_given(options, shape[i]))
-			return options_usage(options->command, "--%s means nothing with --no-specular", shape[i]);
+	static const char *const of_lobe[] = {"sigma",   "gamma",  "ior",    "gaf",
+					      "fresnel", "lambda", "starts", "intervals"};
+	for (size_t i = 0; i < sizeof of_lobe / sizeof *of_lobe; i++)
+		if (!fit->specular && options_given(options, of_lobe[i]))
+			return options_usage(options->command, "--%s means nothing with --no-specular", of_lobe[i]);
 	if (!fit->specular && !isnan(options->intervals))
 		return options_usage(options->command, "--intervals means nothing with --no-specular");
-	if (!fit->anisotropic && (!isnan(fit->sigma_y) || !isnan(fit->angle)))
-		return options_usage(options->command, "--%s needs --anisotropic",
-				     isnan(fit->angle) ? "sigma SX,SY" : "angle");
-	if (fit->anisotropic && !isnan(fit->sigma) && isnan(fit->sigma_y))
-		return options_usage(options->command, "--sigma with --anisotropic takes SX,SY");
 	if (!fresnel_has_ior(fit->fresnel) && options_given(options, "ior"))
 		return options_usage(options->command, "--ior means nothing with --fresnel %s",
 				     fresnel_name(fit->fresnel));
@@ -533,10 +547,29 @@ int options_check_fit(const struct options *options)
 		return options_usage(options->command, "--ior R,G,B gives a model, a fit takes one number");
 	if (fit->per_channel_ior && fit->fresnel != FRESNEL_CONDUCTOR)
 		return options_usage(options->command, "--per-channel-ior needs --fresnel conductor");
-	if (!fit->grazing && options_given(options, "exponent"))
-		return options_usage(options->command, "--exponent means nothing without --diffuse burley");
 	if (options_given(options, "gamma") && !any_has_gamma(fit))
 		return options_usage(options->command, "--gamma means nothing for these NDFs");
+	return check_lambda(options);
+}
+
+/* Combinations in which some option would be ignored, or nothing could come out. */
+int options_check_fit(const struct options *options)
+{
+	const struct fit_options *fit = &options->fit;
+	struct error why = {""};
+	const enum fit_rule broken = fit_options_rule(fit, &why);
+	if (broken == FIT_RULE_TERMS)
+		return options_usage(options->command, "--no-diffuse and --no-specular leave nothing to fit");
+	const int code = check_specular(options);
+	if (code >= 0)
+		return code;
+	if (!fit->anisotropic && (!isnan(fit->sigma_y) || !isnan(fit->angle)))
+		return options_usage(options->command, "--%s needs --anisotropic",
+				     isnan(fit->angle) ? "sigma SX,SY" : "angle");
+	if (fit->anisotropic && !isnan(fit->sigma) && isnan(fit->sigma_y))
+		return options_usage(options->command, "--sigma with --anisotropic takes SX,SY");
+	if (!fit->grazing && options_given(options, "exponent"))
+		return options_usage(options->command, "--exponent means nothing without --diffuse burley");
 	if (broken == FIT_RULE_TABULATED ||
 	    (has_tabulated(fit) &&
 	     (options->command == COMMAND_BENCH || options_given(options, "trace") || !isnan(options->within))))
@@ -675,8 +708,9 @@ bool options_index_per_channel(const struct options *options)
 /* An option for a term that the model does not have. */
 static int check_model(const struct options *options)
 {
-	static const char *const specular[] = {"sigma",  "angle", "gamma", "ior", "k",   "ndf", "gaf",    "fresnel",
-					       "params", "nodes", "f0",    "f82", "f90", "ks2", "sigma2", "gamma2"};
+	static const char *const specular[] = {"sigma", "angle",  "gamma",   "ior",    "k",     "ndf",
+					       "gaf",   "lambda", "fresnel", "params", "nodes", "f0",
+					       "f82",   "f90",    "ks2",     "sigma2", "gamma2"};
 	const enum command command = options->command;
 	const struct ndf_class *ndf = options->fit.ndf[0];
 	if (options->fit.n_ndf != 1)
@@ -708,7 +742,8 @@ static int check_model(const struct options *options)
 		return options_usage(command, "--angle needs --sigma SX,SY");
 	if (options->fit.fresnel != FRESNEL_CONDUCTOR && options_given(options, "k"))
 		return options_usage(command, "--k means nothing without --fresnel conductor");
-	return check_terms(options);
+	const int code = check_lambda(options);
+	return code >= 0 ? code : check_terms(options);
 }
 
 /* The NDF of the model. */

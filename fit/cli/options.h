@@ -60,6 +60,7 @@ struct options {
 	bool difference;
 	bool transmission, multiple; /* render: a sphere of glass, with all orders of scattering */
 	bool pictures;               /* compare: columns of pictures */
+	bool models, sort_by_gain;   /* compare: the ladder of models, not NDFs; the order of materials */
 	atomic_bool *cancel;
 	char **path; /* what is no option, in the order given */
 	int n_paths;

@@ -270,8 +270,8 @@ static void print_axes(FILE *file, char *const *row, bool narrow)
 /* Between which values the parameters may lie, below the row. */
 static void print_intervals(FILE *file, char *const *row)
 {
-	static const char *const name[INTERVAL_PARAMETERS] = {"sigma",    "gamma",  "n",     "k",
-							      "exponent", "sigma2", "gamma2"};
+	static const char *const name[INTERVAL_PARAMETERS] = {
+		"sigma", "gamma", "n", "k", "exponent", "sigma2", "gamma2", "sigma_x/sigma_y", "angle"};
 	char text[INTERVAL_PARAMETERS * (INTERVAL_TEXT_SIZE + SHOWN_SIZE)] = "", one[INTERVAL_TEXT_SIZE];
 	int used = 0;
 	for (enum interval_parameter p = 0; p < INTERVAL_PARAMETERS; p++)

@@ -7,8 +7,10 @@
 #include "fit/commands/commands.h"
 #include "fit/results/compare.h"
 #include "fit/results/contradiction.h"
+#include "fit/results/ladder_table.h"
 #include "fit/results/store.h"
 #include "fit/sources/batch.h"
+#include "fit/sources/model_ladder.h"
 #include "fit/sources/row_pictures.h"
 
 #include <stdlib.h>
@@ -73,7 +75,7 @@ static int compare(const struct options *options, struct csv_table *rows)
 	struct comparison c;
 	struct pictures_light light = {.n_failed = 0};
 	struct error error;
-	enum status status = comparison_init(&c, rows, options->pictures, &error);
+	enum status status = comparison_init(&c, rows, options->pictures, options->sort_by_gain, &error);
 	if (status == STATUS_OK) {
 		status = options->pictures ? environment_named("studio", &light.environment) : STATUS_OK;
 		if (status == STATUS_OK)
@@ -119,7 +121,7 @@ static int compare_table(const struct options *options)
 {
 	struct error error;
 	struct csv_table rows = csv_table_make(result_columns, RESULT_COLUMNS);
-	static const char *const useful[] = {"output", "json", "table", "pictures", "threads", NULL};
+	static const char *const useful[] = {"output", "json", "table", "pictures", "threads", "sort", NULL};
 	const char *path = options->path[0], *ignored = options_given_beside(options, useful);
 	if (!ignored && !options->pictures && options_given(options, "threads"))
 		ignored = "threads";
@@ -175,6 +177,36 @@ static int compare_fits(const struct options *options)
 	return code == EXIT_DONE && (bad || status != STATUS_OK) ? EXIT_FAILED : code;
 }
 
+/* The ladder of models instead. */
+static int compare_models(struct options *options)
+{
+	static const char *const own[] = {"gray", "lobes", "diffuse", "pictures", "no-diffuse", "no-specular"};
+	struct csv_table table = csv_table_make(ladder_columns, LADDER_COLUMNS);
+	struct files files;
+	struct error error;
+	for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+		if (options_given(options, own[i]))
+			return options_usage(COMMAND_COMPARE, "--%s means nothing with --models", own[i]);
+	if (options->fit.fresnel == FRESNEL_F82)
+		return options_usage(COMMAND_COMPARE, "--fresnel f82 means nothing with --models");
+	if (options_given(options, "ndf") && options->fit.n_ndf > 1)
+		return options_usage(COMMAND_COMPARE, "--models takes one --ndf");
+	options->fit.n_ndf = 1;
+	const int bad = files_collect(&files, options->path, options->n_paths, options->recursive, options->cancel);
+	const int wrong = bad < 0 ? EXIT_FAILED : outputs_check(options, files.path, files.n);
+	enum status status = options->output && wrong < 0 ? store_probe(options->output, &error) : STATUS_OK;
+	int code = wrong >= 0 ? wrong : *options->cancel ? EXIT_INTERRUPTED : EXIT_FAILED;
+	if (wrong < 0 && status == STATUS_OK && files.n > 0 && !*options->cancel)
+		code = model_ladder(options, &files, &table);
+	if (table.n_rows > 0 && code != EXIT_INTERRUPTED)
+		status = write_output(options, &table, &error);
+	if (status != STATUS_OK)
+		report_error("%s", error.text);
+	csv_table_free(&table);
+	files_free(&files);
+	return code == EXIT_DONE && (bad || status != STATUS_OK) ? EXIT_FAILED : code;
+}
+
 int cmd_compare(int argc, char **argv, atomic_bool *cancel)
 {
 	struct options options;
@@ -184,9 +216,11 @@ int cmd_compare(int argc, char **argv, atomic_bool *cancel)
 	for (int i = 0; i < options.n_paths; i++)
 		if (csv_is_name(options.path[i])) {
 			char *path = options.path[0];
+			if (options.models)
+				return options_usage(COMMAND_COMPARE, "--models needs measurements, not a table");
 			options.path[0] = options.path[i];
 			options.path[i] = path;
 			return compare_table(&options);
 		}
-	return compare_fits(&options);
+	return options.models ? compare_models(&options) : compare_fits(&options);
 }

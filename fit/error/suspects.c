@@ -498,8 +498,8 @@ enum status suspects_find(const struct measurement *measurement, const struct cr
 
 const char *suspects_words(const struct suspects *suspects, char text[SUSPECTS_WORDS])
 {
-	static const char *const word[] = {"zeros",       "wedge",      "bright", "dark",   "cosine",
-					   "interleaved", "asymmetric", "spikes", "clipped"};
+	static const char *const word[] = {"zeros",       "wedge",      "bright", "dark",    "cosine",
+					   "interleaved", "asymmetric", "spikes", "clipped", "correlated"};
 	size_t used = 0;
 
 	text[0] = '\0';
@@ -554,5 +554,7 @@ const char *suspects_explain(const struct suspects *s, char text[SUSPECTS_TEXT])
 	if (s->found & SUSPECT_CLIPPED)
 		add(text, "the largest value stands in %d rows of the table: clipped? mask it with -1",
 		    s->n_clipped_rows);
+	if (s->found & SUSPECT_CORRELATED)
+		add(text, "correlated G fits much better, E below %.2g: --gaf correlated", s->correlated);
 	return text;
 }

@@ -18,6 +18,7 @@ enum suspect {
 	SUSPECT_ASYMMETRIC = 1 << 6,  /* exchanging the directions changes the values */
 	SUSPECT_SPIKES = 1 << 7,      /* single entries far above all their neighbours */
 	SUSPECT_CLIPPED = 1 << 8,     /* the largest value stands in many places */
+	SUSPECT_CORRELATED = 1 << 9,  /* correlated G fits much better; only a fit can tell, and sets it */
 };
 
 enum { SUSPECTS_ALBEDOS = 3 };
@@ -29,6 +30,7 @@ struct suspects {
 	double ends_at;     /* degrees: the theta_i or theta_o beyond which nothing is measured or all is 0; NaN */
 	double asymmetry;   /* mean relative difference of the halves of a row that the exchange maps on one another */
 	int cosine;         /* SUSPECT_COSINE: 1 of theta_i, 2 of theta_o, 3 of both */
+	double correlated;  /* SUSPECT_CORRELATED: E is below this with correlated G */
 	size_t n_spikes;    /* entries above 5 times each of their six neighbours, in one channel a row */
 	int n_clipped_rows; /* rows (theta_h, theta_d) that have a channel's largest value; of the channel with most */
 	/* The directional-hemispherical albedo at theta_i = 0, 30 and 60 degrees, integrated over what is measured; and

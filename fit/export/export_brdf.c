@@ -78,6 +78,11 @@ static void lines(struct glsl *glsl, const char *text)
 	fputs(text, glsl->file);
 }
 
+static bool has_first(const struct cook_torrance *model)
+{
+	return export_max(model->ks) > 0;
+}
+
 /* ---- Sliders ---- */
 
 /* Whether the shape can be changed: sigma, and gamma. */
@@ -109,13 +114,11 @@ static void sliders_rgb(struct glsl *glsl, const char *name, const double rgb[3]
 	}
 }
 
-static void write_sliders(struct glsl *glsl)
+/* Of one lobe, but for its F. */
+static void write_lobe_sliders(struct glsl *glsl)
 {
 	const struct cook_torrance *model = glsl->model;
 	const struct ndf *ndf = &model->ndf;
-	sliders_rgb(glsl, "kd", model->kd);
-	if (!(export_max(model->ks) > 0))
-		return;
 	sliders_rgb(glsl, "ks", model->ks);
 	if (slides_sigma(ndf) && export_has_axes(model)) {
 		slider(glsl, "sigma_x", ndf->sigma_x, 1e-4, 1, 4);
@@ -126,10 +129,96 @@ static void write_sliders(struct glsl *glsl)
 	if (slides_gamma(ndf))
 		slider(glsl, "gamma_shape", ndf->gamma, is_named(ndf, "t-family") ? ndf->param[2] + 1e-4 : 1.5001, 10,
 		       1000);
-	if (model->fresnel != FRESNEL_NONE)
+}
+
+/* F0, F82 or F90 of the channels. */
+static void reflectances(const struct cook_torrance *model, int part, double rgb[3])
+{
+	for (int c = 0; c < 3; c++)
+		rgb[c] = model->reflectance[c][part];
+}
+
+static const char *const part_name[F82_PARTS] = {"f0", "f82", "f90"};
+
+static void write_fresnel_sliders(struct glsl *glsl)
+{
+	const struct cook_torrance *model = glsl->model;
+	if (fresnel_has_ior(model->fresnel))
 		slider(glsl, "n", model->n, fit_ior_min(model->fresnel), 3, 100);
 	if (model->fresnel == FRESNEL_CONDUCTOR)
 		slider(glsl, "k", model->k, 0, 10, 100);
+	for (int part = 0; part < F82_PARTS && model->fresnel == FRESNEL_F82; part++) {
+		double rgb[3];
+		reflectances(model, part, rgb);
+		sliders_rgb(glsl, part_name[part], rgb);
+	}
+}
+
+/* ---- The second lobe: written as the first one, to a text in which names are changed then ---- */
+
+static struct cook_torrance second_lobe(const struct cook_torrance *model)
+{
+	struct cook_torrance second = *model;
+	second.ndf = model->second;
+	memcpy(second.ks, model->ks_second, sizeof second.ks);
+	return second;
+}
+
+static bool is_word(char c)
+{
+	return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+/* A word of the text, of so many characters, with 2 behind its first part: mf2_D, sigma2, ks2_r. */
+static void write_second_word(FILE *file, const char *word, size_t length)
+{
+	static const char *const shared[] = {"mf_moved", "mf_F", "MF_PI"};
+	static const char *const prefixes[] = {"mf", "MF", "sigma", "ks"};
+	for (size_t i = 0; i < sizeof shared / sizeof *shared; i++)
+		if (length == strlen(shared[i]) && !strncmp(word, shared[i], length)) {
+			fwrite(word, 1, length, file);
+			return;
+		}
+	if (length == 11 && !strncmp(word, "gamma_shape", length)) {
+		fputs("gamma2", file);
+		return;
+	}
+	for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++) {
+		const size_t n = strlen(prefixes[i]);
+		if (length >= n && !strncmp(word, prefixes[i], n) && (length == n || word[n] == '_')) {
+			fprintf(file, "%s2%.*s", prefixes[i], (int)(length - n), word + n);
+			return;
+		}
+	}
+	fwrite(word, 1, length, file);
+}
+
+static void write_second(FILE *file, const char *text)
+{
+	while (*text) {
+		size_t length = 0;
+		while (is_word(text[length]))
+			length++;
+		if (length > 0)
+			write_second_word(file, text, length);
+		else
+			fputc(text[length++], file);
+		text += length;
+	}
+}
+
+static void write_sliders(struct glsl *glsl)
+{
+	const struct cook_torrance *model = glsl->model;
+	sliders_rgb(glsl, "kd", model->kd);
+	if (cook_torrance_has_grazing(model)) {
+		sliders_rgb(glsl, "kg", model->kg);
+		slider(glsl, "exponent", model->grazing, 1, 10, 100);
+	}
+	if (has_first(model))
+		write_lobe_sliders(glsl);
+	if (has_first(model) || cook_torrance_has_second(model))
+		write_fresnel_sliders(glsl);
 }
 
 /* A function that says whether one of two sliders, or the only one (`other` NULL), was moved. */
@@ -170,11 +259,38 @@ static void derived_rgb(struct glsl *glsl, const char *name, const double rgb[3]
 
 /* F */
 
+/* fresnel_f82() of src/fresnel.c. */
+static void write_f82(struct glsl *glsl)
+{
+	const double x = 6.0 / 7, five = x * x * x * x * x;
+	for (int part = 0; part < F82_PARTS; part++) {
+		double rgb[3];
+		reflectances(glsl->model, part, rgb);
+		derived_rgb(glsl, part_name[part], rgb);
+	}
+	constant(glsl, "MF_FIVE", five);
+	constant(glsl, "MF_PEAK", five * x / 7);
+	lines(glsl, "\nfloat mf_f82_of(float c, float a, float b, float e)\n{\n"
+		    "\tfloat x = 1.0 - c;\n"
+		    "\tfloat five = (x * x) * (x * x) * x;\n"
+		    "\tfloat bump = c * five * x / MF_PEAK;\n"
+		    "\tfloat F = a * (1.0 - five - (1.0 - MF_FIVE) * bump) + b * bump + e * (five - MF_FIVE * bump);\n"
+		    "\treturn min(max(F, 0.0), 1.0);\n}\n\n"
+		    "vec3 mf_F(float c)\n{\n"
+		    "\tvec3 a = mf_f0();\n\tvec3 b = mf_f82();\n\tvec3 e = mf_f90();\n"
+		    "\treturn vec3(mf_f82_of(c, a.x, b.x, e.x), mf_f82_of(c, a.y, b.y, e.y),\n"
+		    "\t\tmf_f82_of(c, a.z, b.z, e.z));\n}\n\n");
+}
+
 static void write_fresnel(struct glsl *glsl)
 {
 	const struct cook_torrance *model = glsl->model;
 	const double n = model->n, k = model->fresnel == FRESNEL_CONDUCTOR ? model->k : 0;
 	const double m2 = (n - k) * (n + k), m2_1 = (n - 1) * (n + 1) - k * k;
+	if (model->fresnel == FRESNEL_F82) {
+		write_f82(glsl);
+		return;
+	}
 	if (model->fresnel == FRESNEL_NONE) {
 		lines(glsl, "float mf_F(float c)\n{\n\treturn 1.0;\n}\n\n");
 		return;
@@ -529,7 +645,8 @@ static void write_lambda(struct glsl *glsl, const struct lambda_table *table)
 /* With axes D is that of a normal, Lambda that of a direction, whose x and y are scaled. */
 static void write_lobe(struct glsl *glsl, bool axes)
 {
-	lines(glsl, "float mf_lobe(vec3 wi, vec3 wo)\n{\n"
+	lines(glsl, glsl->model->fresnel == FRESNEL_F82 ? "vec3" : "float");
+	lines(glsl, " mf_lobe(vec3 wi, vec3 wo)\n{\n"
 		    "\tfloat size = length(wi + wo);\n"
 		    "\tvec3 h = (wi + wo) / size;\n"
 		    "\tfloat G = ");
@@ -564,54 +681,126 @@ static void write_axes(struct glsl *glsl)
 		    "\treturn vec3(MF_COS * w.x + MF_SIN * w.y, MF_COS * w.y - MF_SIN * w.x, w.z);\n}\n\n");
 }
 
-static void write_model(struct glsl *glsl, bool specular)
+/* cook_torrance_grazing(). */
+static void write_grazing(struct glsl *glsl)
 {
-	derived_rgb(glsl, "kd", glsl->model->kd);
-	if (specular)
-		derived_rgb(glsl, "ks", glsl->model->ks);
+	const double exponent = glsl->model->grazing;
+	derived_rgb(glsl, "kg", glsl->model->kg);
+	write_moved(glsl, "mf_exponent_moved", "exponent", exponent, NULL, 0);
+	derived(glsl, "mf_exponent", exponent, "mf_exponent_moved", "exponent");
+	lines(glsl, "float mf_power(float c)\n{\n"
+		    "\treturn exp(mf_exponent() * log(max(1.0 - c, 1e-30)));\n}\n\n"
+		    "float mf_grazing(vec3 wi, vec3 wo)\n{\n"
+		    "\tfloat c = min(0.5 * length(wi + wo), 1.0);\n"
+		    "\treturn c * c * (mf_power(wi.z) + mf_power(wo.z)) / MF_PI;\n}\n\n");
+}
+
+static void write_model(struct glsl *glsl)
+{
+	const struct cook_torrance *model = glsl->model;
+	derived_rgb(glsl, "kd", model->kd);
+	if (has_first(model))
+		derived_rgb(glsl, "ks", model->ks);
 	lines(glsl, "vec3 BRDF(vec3 L, vec3 V, vec3 N, vec3 X, vec3 Y)\n{\n"
 		    "\tvec3 wi = vec3(dot(L, X), dot(L, Y), dot(L, N));\n"
 		    "\tvec3 wo = vec3(dot(V, X), dot(V, Y), dot(V, N));\n"
 		    "\tif (wi.z <= 0.0 || wo.z <= 0.0)\n\t\treturn vec3(0.0);\n"
 		    "\tvec3 f = vec3(0.0);\n"
 		    "\tif (diffuse)\n\t\tf += mf_kd() / MF_PI;\n");
-	if (specular)
+	if (cook_torrance_has_grazing(model))
+		lines(glsl, "\tif (diffuse)\n\t\tf += mf_kg() * mf_grazing(wi, wo);\n");
+	if (has_first(model))
 		lines(glsl, "\tif (specular)\n\t\tf += mf_ks() * mf_lobe(wi, wo);\n");
+	if (cook_torrance_has_second(model))
+		lines(glsl, "\tif (specular)\n\t\tf += mf2_ks() * mf2_lobe(wi, wo);\n");
 	lines(glsl, "\treturn f;\n}\n");
 }
 
-static void write_header(struct glsl *glsl, const struct export *export, const struct lambda_table *table)
+/* What the shader of one lobe is made of. */
+struct lobe {
+	struct cook_torrance model;
+	struct lambda_table table; /* n = 0: none */
+};
+
+static enum status lobe_init(struct lobe *lobe, const struct cook_torrance *model)
 {
-	FILE *file = glsl->file;
-	lines(glsl, "analytic\n");
-	export_comment(export, file, "# ", "");
+	*lobe = (struct lobe){.model = *model};
+	if (!has_first(model) || model->gaf == GAF_V_GROOVE || lambda_kind(&model->ndf) != LAMBDA_OF_TABLE)
+		return STATUS_OK;
+	return lambda_table_init(&lobe->table, &model->ndf);
+}
+
+static void write_table_error(FILE *file, const struct lambda_table *table)
+{
 	if (table->n)
 		fprintf(file,
 			"# Smith's Lambda is interpolated in a table of %d values; between them the error of G1 is at "
 			"most %.1e\n",
 			table->n, table->G1_error);
-	lines(glsl, "\n::begin parameters\nbool diffuse 1\nbool specular 1\n");
-	write_sliders(glsl);
-	lines(glsl, "::end parameters\n\n::begin shader\n\nconst float MF_PI = 3.1415926535897932385;\n\n");
-	lines(glsl, moved);
 }
 
-static enum status write_shader(struct glsl *glsl, const struct export *export, const struct lambda_table *table,
+/* D, G and their product with F. */
+static enum status write_lobe_functions(struct glsl *glsl, const struct lambda_table *table, struct error *error)
+{
+	const enum status status = write_D(glsl, error);
+	if (glsl->model->gaf != GAF_V_GROOVE)
+		write_lambda(glsl, table);
+	if (export_has_axes(glsl->model))
+		write_axes(glsl);
+	write_lobe(glsl, export_has_axes(glsl->model));
+	return status;
+}
+
+/* The sliders of the second lobe, or its functions. */
+static enum status write_second_part(struct glsl *glsl, const struct lobe *second, bool sliders, struct error *error)
+{
+	char *text = NULL;
+	size_t size;
+	struct glsl part = {.file = open_memstream(&text, &size), .model = &second->model};
+	enum status status = STATUS_OK;
+	if (!part.file)
+		return error_set(error, STATUS_NO_MEMORY, "out of memory");
+	if (sliders) {
+		write_lobe_sliders(&part);
+	} else {
+		status = write_lobe_functions(&part, &second->table, error);
+		derived_rgb(&part, "ks", second->model.ks);
+	}
+	const bool failed = ferror(part.file) != 0;
+	if ((fclose(part.file) != 0 || failed) && status == STATUS_OK)
+		status = error_set(error, STATUS_NO_MEMORY, "out of memory");
+	if (status == STATUS_OK)
+		write_second(glsl->file, text);
+	glsl->out_of_range = glsl->out_of_range || part.out_of_range;
+	free(text);
+	return status;
+}
+
+static enum status write_shader(struct glsl *glsl, const struct export *export, const struct lobe *lobe,
 				struct error *error)
 {
-	const bool specular = export_max(glsl->model->ks) > 0;
+	const struct cook_torrance *model = glsl->model;
+	const bool two = cook_torrance_has_second(model);
 	enum status status = STATUS_OK;
-	write_header(glsl, export, table);
-	if (specular) {
+	lines(glsl, "analytic\n");
+	export_comment(export, glsl->file, "# ", "");
+	write_table_error(glsl->file, &lobe[0].table);
+	write_table_error(glsl->file, &lobe[1].table);
+	lines(glsl, "\n::begin parameters\nbool diffuse 1\nbool specular 1\n");
+	write_sliders(glsl);
+	if (two)
+		status = write_second_part(glsl, &lobe[1], true, error);
+	lines(glsl, "::end parameters\n\n::begin shader\n\nconst float MF_PI = 3.1415926535897932385;\n\n");
+	lines(glsl, moved);
+	if (has_first(model) || two)
 		write_fresnel(glsl);
-		status = write_D(glsl, error);
-		if (glsl->model->gaf != GAF_V_GROOVE)
-			write_lambda(glsl, table);
-		if (export_has_axes(glsl->model))
-			write_axes(glsl);
-		write_lobe(glsl, export_has_axes(glsl->model));
-	}
-	write_model(glsl, specular);
+	if (has_first(model) && status == STATUS_OK)
+		status = write_lobe_functions(glsl, &lobe[0].table, error);
+	if (two && status == STATUS_OK)
+		status = write_second_part(glsl, &lobe[1], false, error);
+	if (cook_torrance_has_grazing(model))
+		write_grazing(glsl);
+	write_model(glsl);
 	lines(glsl, "\n::end shader\n");
 	if (status == STATUS_OK && glsl->out_of_range)
 		status = error_set(error, STATUS_UNSUPPORTED,
@@ -621,17 +810,16 @@ static enum status write_shader(struct glsl *glsl, const struct export *export, 
 
 static enum status brdf_write(const struct export *export, FILE *file, struct error *error)
 {
-	const struct cook_torrance *model = &export->model;
+	const struct cook_torrance *model = &export->model, second = second_lobe(model);
 	struct glsl glsl = {.file = file, .model = model};
-	struct lambda_table table = {0};
-	const bool tabulated =
-		export_max(model->ks) > 0 && model->gaf != GAF_V_GROOVE && lambda_kind(&model->ndf) == LAMBDA_OF_TABLE;
-	if (tabulated && lambda_table_init(&table, &model->ndf) != STATUS_OK) {
-		lambda_table_free(&table);
-		return error_set(error, STATUS_NO_MEMORY, "out of memory");
-	}
-	const enum status status = write_shader(&glsl, export, &table, error);
-	lambda_table_free(&table);
+	struct lobe lobe[2] = {{.table = {0}}, {.table = {0}}};
+	enum status status = lobe_init(&lobe[0], model);
+	if (status == STATUS_OK && cook_torrance_has_second(model))
+		status = lobe_init(&lobe[1], &second);
+	status = status == STATUS_OK ? write_shader(&glsl, export, lobe, error)
+				     : error_set(error, status, "%s", status_str(status));
+	lambda_table_free(&lobe[0].table);
+	lambda_table_free(&lobe[1].table);
 	return status;
 }
 
@@ -644,11 +832,15 @@ static enum status brdf_prepare(struct export *export, struct error *error)
 	if (export_max(export->model.ks) > 0 && ndf_is_tilted(&export->model.ndf))
 		return error_set(error, STATUS_UNSUPPORTED,
 				 "the shader has no tilted facets (--format bsdf and json have every model)");
-	if (cook_torrance_is_rich(&export->model))
+	if (export_max(export->model.ks) > 0 && export->model.per_channel_ior)
 		return error_set(error, STATUS_UNSUPPORTED,
-				 "the shader has neither a second lobe nor a diffuse term of grazing directions nor "
-				 "f82 nor an index for each channel "
-				 "(--format bsdf, merl and json have every model)");
+				 "the shader has no index for each channel (--format bsdf, merl and json have every "
+				 "model)");
+	if (cook_torrance_has_second(&export->model) &&
+	    (ndf_is_tabulated(export->model.second.class) || ndf_has_tilt(export->model.second.class)))
+		return error_set(error, STATUS_UNSUPPORTED,
+				 "the shader has no second lobe of %s (--format bsdf and json have every model)",
+				 ndf_name(export->model.second.class));
 	if (ndf_has_tilt(export->model.ndf.class) && !ndf_plain(&export->model.ndf, &export->model.ndf))
 		return error_set(error, STATUS_UNSUPPORTED, "the shader has no such ellipsoid");
 	return export_as_it_is(

@@ -2,9 +2,9 @@
 /* pbrt-v4: `mix` of `diffuse` and `conductor`, of which it takes the second with probability `amount`: the sum in
  * expectation,
  *     kd = (1 - w) reflectance,  ks = w.
- * The conductor is F D G / (4 cos_i cos_o) of GGX with the height-correlated G. Its eta and k are spectra: flat for a gray
- * ks; for a coloured one, of which w is the largest, they are those of three bands [spectrum_bands()], of which each
- * reflects at normal incidence what it has of ks F. Towards grazing incidence all reflect w. */
+ * The conductor is F D G / (4 cos_i cos_o) of GGX with the height-correlated G. Its eta and k are spectra: flat for a
+ * gray ks; for a coloured one, of which w is the largest, they are those of three bands [spectrum_bands()], of which
+ * each reflects at normal incidence what it has of ks F. Towards grazing incidence all reflect w. */
 #include "fit/export/export_format.h"
 #include "fit/export/substitute.h"
 #include "fit/results/csv_number.h"
@@ -141,17 +141,14 @@ static void write_spectrum(FILE *file, const char *name, const struct export_ban
 static void write_lobe(FILE *file, const struct export *export)
 {
 	const struct cook_torrance *model = &export->model;
-	char sigma[CSV_NUMBER_SIZE], sigma_y[CSV_NUMBER_SIZE];
-	csv_number(sigma, model->ndf.sigma_x);
+	char text[CSV_NUMBER_SIZE];
 	fputs("\"string type\" \"conductor\"", file);
 	write_spectrum(file, "eta", &export->bands, export->bands.n, model->n);
 	write_spectrum(file, "k", &export->bands, export->bands.k, complex_k(model));
-	fputc('\n', file);
+	fprintf(file, "\n    \"float %s\" %s", export_has_axes(model) ? "uroughness" : "roughness",
+		csv_number(text, model->ndf.sigma_x));
 	if (export_has_axes(model))
-		fprintf(file, "    \"float uroughness\" %s \"float vroughness\" %s", sigma,
-			csv_number(sigma_y, model->ndf.sigma_y));
-	else
-		fprintf(file, "    \"float roughness\" %s", sigma);
+		fprintf(file, " \"float vroughness\" %s", csv_number(text, model->ndf.sigma_y));
 	fprintf(file, " \"bool remaproughness\" false\n");
 }
 

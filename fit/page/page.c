@@ -286,7 +286,7 @@ static const struct {
 	{RESULT_SIGMA, "\xcf\x83", INTERVAL_SIGMA, true},
 	{RESULT_SIGMA_X, "\xcf\x83 x", INTERVAL_PARAMETERS, false},
 	{RESULT_SIGMA_Y, "\xcf\x83 y", INTERVAL_PARAMETERS, false},
-	{RESULT_ANGLE, "angle", INTERVAL_PARAMETERS, false},
+	{RESULT_ANGLE, "angle", INTERVAL_ANGLE, false},
 	{RESULT_GAMMA, "\xce\xb3", INTERVAL_GAMMA, true},
 	{RESULT_IOR, "n", INTERVAL_IOR, true},
 	{RESULT_F0_R, "F0 r", INTERVAL_PARAMETERS, false},
@@ -390,15 +390,26 @@ static void put_parameter(FILE *page, char *const *row, int p)
 	fputs("</td>", page);
 }
 
-/* What has no column of its own; of k its interval is told here, too. */
+/* What has no column of its own. */
 static void put_further(FILE *page, char *const *row)
 {
+	static const struct {
+		enum interval_parameter interval;
+		const char *name;
+	} own[] = {{INTERVAL_K, "k"}, {INTERVAL_RATIO, "sigma_x/sigma_y"}};
 	enum { SHORT_PARAMS = 120 };
-	char text[SHORT_PARAMS + INTERVAL_TEXT_SIZE + 16], k[INTERVAL_TEXT_SIZE];
-	const bool is_short = strlen(row[RESULT_PARAMS]) <= SHORT_PARAMS, has_k = *interval_text(k, row, INTERVAL_K);
-	snprintf(text, sizeof text, "%s%s%s%s", is_short ? row[RESULT_PARAMS] : "the values of D: see the result table",
-		 has_k ? " (k " : "", k, has_k ? ")" : "");
-	put_text_cell(page, text, true);
+	char text[INTERVAL_TEXT_SIZE];
+	fputs("<td class=\"long\">", page);
+	html_text(page, strlen(row[RESULT_PARAMS]) <= SHORT_PARAMS ? row[RESULT_PARAMS]
+								   : "the values of D: see the result table");
+	for (size_t i = 0; i < sizeof own / sizeof *own; i++) {
+		if (!*interval_text(text, row, own[i].interval))
+			continue;
+		fprintf(page, "<span class=\"range\">%s ", own[i].name);
+		html_text(page, text);
+		fputs("</span>", page);
+	}
+	fputs("</td>", page);
 }
 
 static void put_other_bins(FILE *page, char *const *row)

@@ -92,9 +92,10 @@ static int material_order(const void *a, const void *b)
 	return order ? order : strcmp(row_a[RESULT_PATH], row_b[RESULT_PATH]);
 }
 
-enum status comparison_init(struct comparison *c, struct csv_table *rows, bool pictures, struct error *error)
+enum status comparison_init(struct comparison *c, struct csv_table *rows, bool pictures, bool by_gain,
+			    struct error *error)
 {
-	*c = (struct comparison){.pictures = pictures};
+	*c = (struct comparison){.pictures = pictures, .by_gain = by_gain};
 	for (size_t i = 1; i < rows->n_rows; i++)
 		c->weights |= strcmp(rows->row[0][RESULT_WEIGHT], rows->row[i][RESULT_WEIGHT]) != 0;
 	enum status status = collect_ndfs(c, rows, error);
@@ -175,12 +176,44 @@ static bool worst_is_least(const struct comparison *c, int i)
 	return picture >= 0 ? picture >= c->n_ndf : i >= c->n_ndf && !c->relation[i - c->n_ndf].above;
 }
 
+struct gain_line {
+	double gain;
+	size_t place;
+	char **row;
+};
+
+static int gain_order(const void *a, const void *b)
+{
+	const struct gain_line *p = a, *q = b;
+	if (p->gain != q->gain)
+		return p->gain > q->gain ? -1 : 1;
+	return p->place < q->place ? -1 : 1;
+}
+
+/* Orders the lines of one weight, whose values are still as they were added. */
+static enum status sort_by_gain(struct comparison *c)
+{
+	const double *gain = c->value[c->n_ndf]; /* the first relation: STD over GGX */
+	struct gain_line *line = calloc(c->n_materials + 1, sizeof *line);
+	if (!line)
+		return STATUS_NO_MEMORY;
+	for (size_t i = 0; i < c->n_materials; i++)
+		line[i] = (struct gain_line){isnan(gain[i]) ? -INFINITY : gain[i], i, c->table.row[c->first_line + i]};
+	qsort(line, c->n_materials, sizeof *line, gain_order);
+	for (size_t i = 0; i < c->n_materials; i++)
+		c->table.row[c->first_line + i] = line[i].row;
+	free(line);
+	return STATUS_OK;
+}
+
 /* The summary of the lines of one weight, after which those of the next begin. */
 static enum status end_weight(struct comparison *c)
 {
 	enum { MEAN, MEDIAN, WORST, WINS, LINES };
 	static const char *const name[LINES] = {"(mean)", "(median)", "(worst)", "(wins)"};
 	double number[LINES][COMPARE_VALUES_MAX] = {{0}};
+	if (c->by_gain && sort_by_gain(c) != STATUS_OK)
+		return STATUS_NO_MEMORY;
 	for (int i = 0; i < c->n_values; i++) {
 		double *x = c->value[i];
 		size_t n = 0;
@@ -197,6 +230,7 @@ static enum status end_weight(struct comparison *c)
 	for (int line = 0; line < LINES; line++)
 		if (add_line(c, name[line], number[line], line == WINS ? ties : "") != STATUS_OK)
 			return STATUS_NO_MEMORY;
+	c->first_line = c->table.n_rows;
 	c->n_materials = 0;
 	c->ties = 0;
 	memset(c->wins, 0, sizeof c->wins);

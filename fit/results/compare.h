@@ -33,15 +33,18 @@ struct comparison {
 	char name[COMPARE_VALUES_MAX][COMPARE_NAME_SIZE];
 	struct csv_column column[COMPARE_VALUES_MAX + 3];
 	double *value[COMPARE_VALUES_MAX]; /* column by column; one value per material, NaN: none */
+	bool by_gain;      /* lines of a weight in the order of what STD gains over GGX, the most first, not of names */
+	size_t first_line; /* of the weight whose lines are added */
 	size_t n_materials;
 	int wins[FIT_NDFS_MAX], ties;
 };
 
 /* comparison_init - finds the NDFs of the rows of a result table, which must outlive *c, and from them the columns. The rows
  * get reordered: those of one weight, material and path follow one another.
- * pictures: whether there are columns of picture errors.
+ * pictures: whether there are columns of picture errors. by_gain: of each weight, lines go by how much STD gains over GGX, not by
+ * name; those without are last.
  * Errors: STATUS_UNSUPPORTED: more than FIT_NDFS_MAX NDFs; STATUS_NO_MEMORY. Call comparison_free() in any case. */
-MUST_CHECK enum status comparison_init(struct comparison *c, struct csv_table *rows, bool pictures,
+MUST_CHECK enum status comparison_init(struct comparison *c, struct csv_table *rows, bool pictures, bool by_gain,
 				       struct error *error);
 void comparison_free(struct comparison *c);
 

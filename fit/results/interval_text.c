@@ -80,7 +80,7 @@ static void add_move(char text[OTHER_BINS_SIZE], const char *name, double own, d
 	if (isnan(own) || isnan(other) || own == other)
 		return;
 	if (isfinite(own) && isfinite(other) && own != 0)
-		snprintf(text + used, OTHER_BINS_SIZE - used, ", %s %+.2g %%", name, 100 * (other / own - 1));
+		snprintf(text + used, OTHER_BINS_SIZE - used, ", %s %+.3g %%", name, 100 * (other / own - 1));
 	else
 		snprintf(text + used, OTHER_BINS_SIZE - used, ", %s %.4g to %.4g", name, own, other);
 }

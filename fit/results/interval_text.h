@@ -15,7 +15,7 @@ const char *interval_text(char text[INTERVAL_TEXT_SIZE], char *const *row, enum 
 enum { OTHER_BINS_SIZE = 512 };
 
 /* other_bins_text - how far the parameters of a row move when the entries stand at the centres of their bins (column other_bins):
- * "E 0.3301, sigma +22 %, gamma -1.3 %, n +37 %, ks -4 %"; kd, ks and what else has three channels by their sums. An infinite or
+ * "E 0.3301, sigma +22.1 %, gamma -1.3 %, n +37 %, ks -4.02 %"; kd, ks and what else has three channels by their sums. An infinite or
  * vanishing one as "gamma inf to 30.1". "" where the row does not say. */
 const char *other_bins_text(char text[OTHER_BINS_SIZE], char *const *row);
 

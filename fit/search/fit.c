@@ -169,7 +169,7 @@ static enum status result_with_ndf(const struct run *run, const struct found *fo
 	if (status != STATUS_OK)
 		return status;
 	r->error = r->metrics.error[o->criterion.weight];
-	r->error_isotropic = NAN;
+	r->error_isotropic = r->error_correlated = NAN;
 	r->lower_bound = found->linear.lower_bound;
 	r->end = found->limited ? FIT_LIMIT : FIT_CONVERGED;
 	r->starts = found->starts;
@@ -689,6 +689,39 @@ static int richer_starts(const struct run *run, const struct ndf_class *class, c
 static enum status fit_kind(const struct run *run, const struct ndf_class *class, struct nested *nested,
 			    struct fit_result *r);
 
+/* Two lobes beside a grazing term hold two lobes without one, too, which the simpler model is not. */
+static enum status fit_without_grazing(const struct run *run, const struct ndf_class *class, struct fit_result *r)
+{
+	struct fit_options options = *run->options;
+	struct memory *fresh = calloc(1, sizeof *fresh);
+	struct run own = *run;
+	enum status status = STATUS_NO_MEMORY;
+
+	options.grazing = false;
+	own.options = &options;
+	if (fresh) {
+		own.minima = fresh->minima;
+		own.isotropic = &fresh->nested;
+		status = fit_class(&own, class, &fresh->nested, r);
+	}
+	free(fresh);
+	return status;
+}
+
+/* Of two lobes: where one does as well, the second may have any shape; where none of the grazing term does, that any exponent. */
+static unsigned open_beside(const struct run *run, const struct ndf_class *class, const struct fit_result *r,
+			    double one_lobe, double no_grazing)
+{
+	const double limit = undetermined_limit(r->error);
+	unsigned bits = 0;
+
+	if (run->options->lobes > 1 && cook_torrance_has_second(&r->model) && one_lobe <= limit)
+		bits |= BOUND_SECOND_SIGMA | (ndf_has_gamma(class) ? (unsigned)BOUND_SECOND_GAMMA : 0u);
+	if (isnan(run->options->grazing_exponent) && no_grazing <= limit)
+		bits |= BOUND_GRAZING;
+	return bits;
+}
+
 /* A richer model: the simpler one first. With one lobe there is a scan of its own as well. A richer model never loses. */
 static enum status fit_richer(const struct run *run, const struct ndf_class *class,
 			      const struct fit_options *simpler_options, struct nested *nested, struct fit_result *r)
@@ -696,7 +729,8 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 	const bool scans = run->options->lobes < 2;
 	struct memory *fresh = calloc(1, sizeof *fresh);
 	struct run own = *run;
-	struct fit_result simpler;
+	const bool two_ways = run->options->lobes > 1 && run->options->grazing;
+	struct fit_result simpler, other;
 	struct shape start[SEARCH_GIVEN];
 	struct found found;
 	long evaluations = 0;
@@ -717,6 +751,10 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 		status = run->options->per_channel_ior ? fit_kind(run, class, nested, r) : fit_alone(run, class, r);
 	if (status == STATUS_OK)
 		count = richer_starts(run, class, &simpler, nested, start, &evaluations, &status);
+	if (status == STATUS_OK && two_ways)
+		status = fit_without_grazing(run, class, &other);
+	if (status == STATUS_OK && two_ways && cook_torrance_has_second(&other.model))
+		start[count < SEARCH_GIVEN ? count++ : count - 1] = shape_of(&other.model);
 	if (status == STATUS_OK) {
 		const struct shape known = scans ? shape_of(&r->model) : start[0];
 
@@ -737,6 +775,12 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 	take_simpler(run, r, &simpler);
 	r->evaluations += simpler.evaluations + evaluations;
 	r->passes += simpler.passes;
+	if (two_ways) {
+		take_simpler(run, r, &other);
+		r->evaluations += other.evaluations;
+		r->passes += other.passes;
+	}
+	r->undetermined |= open_beside(run, class, r, simpler.error, two_ways ? other.error : INFINITY);
 	r->seconds = simpler.seconds + search_clock() - begin;
 	return STATUS_OK;
 }
@@ -832,7 +876,7 @@ static enum status find_undetermined(const struct run *run, const struct ndf_cla
 
 	if (has_sparse_lambda(run, class))
 		options.gamma = m->ndf.gamma; /* the other values have been fitted */
-	/* Of two lobes no scan has been made, over all the shapes of both. */
+	/* Of two lobes no scan has been made, over all the shapes of both: open_beside() tells what is known. */
 	if (!options.algorithm && options.lobes < 2)
 		status = undetermined_find(&run->multiresolution, &options, class, &run->minima[index_of(class)], &best,
 					   r->error, settled, &found, &r->evaluations);
@@ -840,6 +884,37 @@ static enum status find_undetermined(const struct run *run, const struct ndf_cla
 	if (r->error_isotropic <= undetermined_limit(r->error))
 		r->undetermined |= BOUND_ANGLE;
 	r->seconds += search_clock() - begin;
+	return status;
+}
+
+/* E from which on a fit is so bad that the data may have another G, and the part of it that tells that they have. */
+#define BAD 0.03
+#define MUCH_BETTER 0.6
+
+/* What the best of the fits would be with correlated G, if that is much better. Of data with uncorrelated G it is worse. */
+static enum status try_correlated(const struct run *run, struct fit_result results[])
+{
+	struct fit_options other = *run->options;
+	struct fit_result *best = &results[0];
+	const struct ndf_class *class = other.ndf[0];
+
+	for (int n = 1; n < other.n_ndf; n++)
+		if (results[n].error < best->error) {
+			best = &results[n];
+			class = other.ndf[n];
+		}
+	if (other.criterion.gaf != GAF_UNCORRELATED || other.algorithm || !other.specular || other.anisotropic ||
+	    ndf_is_tabulated(class) || leave_out(&other) || best->error < BAD)
+		return STATUS_OK;
+	const struct shape shape = shape_of(&best->model);
+	const double enough = MUCH_BETTER * best->error;
+	double error;
+
+	other.criterion.gaf = GAF_CORRELATED;
+	const enum status status = search_near(&run->multiresolution, &other, class, &shape, enough, &error);
+
+	if (status == STATUS_OK && error < enough)
+		best->error_correlated = error;
 	return status;
 }
 
@@ -877,10 +952,29 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 		if (status == STATUS_OK)
 			status = find_undetermined(&run, options->ndf[n], nested, &results[n]);
 	}
+	if (status == STATUS_OK)
+		status = try_correlated(&run, results);
 	for (int n = 0; n < options->n_ndf && status != STATUS_OK; n++)
 		fit_result_free(&results[n]);
 	free(memory);
 	multiresolution_free(&run.multiresolution);
+	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
+}
+
+enum status fit_samples_of(const struct fit_context *context, const struct measurement *measurement,
+			   const struct fit_options *options, struct multiresolution *multiresolution,
+			   struct error *error)
+{
+	struct sample_set full;
+	enum status status = check_arguments(context, measurement, options, error);
+
+	if (status != STATUS_OK)
+		return status;
+	status = sample_set_init(&full, &context->geometry, measurement, options->threads);
+	if (status == STATUS_NO_DATA)
+		return error_set(error, status, "no entry to fit: expected some valid ones that are not all zero");
+	if (status == STATUS_OK)
+		status = multiresolution_init(multiresolution, &full);
 	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
 }
 
@@ -900,6 +994,8 @@ static enum status find_intervals(const struct multiresolution *multiresolution,
 	/* A simpler model may have been as good. */
 	if (!cook_torrance_has_second(&r->model))
 		r->interval[INTERVAL_SIGMA2].n = r->interval[INTERVAL_GAMMA2].n = 0;
+	if (best.stretch == 0)
+		r->interval[INTERVAL_ANGLE].n = 0;
 	r->seconds += search_clock() - begin;
 	return status;
 }
@@ -909,16 +1005,10 @@ enum status fit_intervals(const struct fit_context *context, const struct measur
 			  struct error *error)
 {
 	struct multiresolution multiresolution;
-	struct sample_set full;
-	enum status status = check_arguments(context, measurement, options, error);
+	enum status status = fit_samples_of(context, measurement, options, &multiresolution, error);
 
 	if (status != STATUS_OK)
 		return status;
-	status = sample_set_init(&full, &context->geometry, measurement, options->threads);
-	if (status == STATUS_OK)
-		status = multiresolution_init(&multiresolution, &full);
-	if (status != STATUS_OK)
-		return error_set(error, status, "%s", status_str(status));
 	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++)
 		status = find_intervals(&multiresolution, options, options->ndf[n], percent, &results[n]);
 	multiresolution_free(&multiresolution);
@@ -929,24 +1019,23 @@ enum status fit_estimate(const struct fit_context *context, const struct measure
 			 const struct fit_options *options, double *estimate, struct error *error)
 {
 	struct multiresolution multiresolution;
-	struct sample_set full;
-	enum status status = check_arguments(context, measurement, options, error);
+	enum status status = fit_samples_of(context, measurement, options, &multiresolution, error);
 	bool known = true;
 
 	*estimate = INFINITY;
-	if (status == STATUS_OK)
-		status = sample_set_init(&full, &context->geometry, measurement, options->threads);
-	if (status != STATUS_OK)
-		return status;
-	status = multiresolution_init(&multiresolution, &full);
 	if (status != STATUS_OK)
 		return status;
 	for (int n = 0; n < options->n_ndf && status == STATUS_OK; n++) {
+		struct space space;
+		struct shape shape;
 		double one;
 
-		status = search_estimate(&multiresolution, options, options->ndf[n], &one);
+		space_init(&space, options, options->ndf[n]);
+		known = known && space.dims > 0;
+		if (space.dims == 0)
+			continue;
+		status = search_estimate(&multiresolution, options, options->ndf[n], NULL, 0, &shape, &one);
 		*estimate = fmin(*estimate, one);
-		known = known && isfinite(one);
 	}
 	if (!known)
 		*estimate = INFINITY;

@@ -41,13 +41,16 @@ enum fit_bound {
 #define FIT_UNDETERMINED 1e-3
 #define FIT_UNDETERMINED_FLOOR 1e-6
 
+struct multiresolution;
+
 struct fit_result {
 	struct cook_torrance model; /* parameters; n is meaningless for FRESNEL_NONE or without a specular term */
 	struct pwl *pwl;            /* pl: the table of model.ndf, owned by the result; else NULL */
 	bool diffuse, specular;     /* what the model has, as in the options */
 	double error;               /* E under the fit's own weight */
-	double error_isotropic;     /* of an anisotropic fit: E of the isotropic one, which is never below; else NaN */
-	double lower_bound;         /* certified: no kd, ks of this shape goes below it */
+	double error_correlated; /* of fit_run()'s best: E with correlated G is below this, much below `error`; else NaN */
+	double error_isotropic; /* of an anisotropic fit: E of the isotropic one, which is never below; else NaN */
+	double lower_bound;     /* certified: no kd, ks of this shape goes below it */
 	struct fit_metrics metrics;
 	enum fit_end end;
 	int starts, starts_agreeing; /* local searches run; those that ended within 0.1 % of the best */
@@ -102,6 +105,12 @@ MUST_CHECK enum status fit_intervals(const struct fit_context *context, const st
  * Errors: as fit_run() */
 MUST_CHECK enum status fit_estimate(const struct fit_context *context, const struct measurement *measurement,
 				    const struct fit_options *options, double *estimate, struct error *error);
+
+/* fit_samples_of - the measurement and samples of it, as the search sees them; to be freed with multiresolution_free().
+ * Errors: as fit_run() */
+MUST_CHECK enum status fit_samples_of(const struct fit_context *context, const struct measurement *measurement,
+				      const struct fit_options *options, struct multiresolution *multiresolution,
+				      struct error *error);
 
 /* fit_eval - the metrics of a given model against a measurement, no fit; an anisotropic one wants scattered entries. Of the options only criterion (but its gaf, which is the
  * model's) and threads are read, and checked. Errors as of fit_run(). */

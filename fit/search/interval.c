@@ -20,7 +20,8 @@ enum {
 
 const char *interval_parameter_name(enum interval_parameter parameter)
 {
-	static const char *const name[] = {"sigma", "gamma", "ior", "k", "exponent", "sigma2", "gamma2"};
+	static const char *const name[] = {"sigma",  "gamma",  "ior",   "k",    "exponent",
+					   "sigma2", "gamma2", "ratio", "angle"};
 
 	return name[parameter];
 }
@@ -86,6 +87,10 @@ static double *value_in(struct shape *shape, enum coordinate coordinate)
 		return &shape->second_sigma;
 	case COORDINATE_SECOND_GAMMA:
 		return &shape->second_gamma;
+	case COORDINATE_STRETCH:
+		return &shape->stretch;
+	case COORDINATE_ANGLE:
+		return &shape->angle;
 	default:
 		return &shape->k;
 	}
@@ -214,12 +219,21 @@ static enum status settle(struct profile *p, struct profile_point *end, double s
 	return status;
 }
 
+/* Where a walk ends: an angle has been everywhere after a quarter turn both ways. */
+static double end_of_domain(const struct profile *p, double start, int direction)
+{
+	const struct space *s = &p->context->space;
+
+	if (s->coordinate[p->d] == COORDINATE_ANGLE)
+		return start + 90 * direction;
+	return direction < 0 ? s->lo[p->d] : s->hi[p->d];
+}
+
 /* One end of the interval around *start, in direction -1 or 1; *open: the end of the domain is inside. */
 static enum status find_end(struct profile *p, const struct profile_point *start, int direction,
 			    struct profile_point *end, bool *open)
 {
-	const struct space *s = &p->context->space;
-	const double bound = direction < 0 ? s->lo[p->d] : s->hi[p->d];
+	const double bound = end_of_domain(p, start->x, direction);
 	struct profile_point before = *start, in = *start, out;
 	double step = 0.1 * p->spacing;
 	enum status status = STATUS_OK;
@@ -258,6 +272,8 @@ static double end_value(const struct profile *p, double x, bool open, int direct
 	const struct space *s = &p->context->space;
 	const double value = space_value(s, p->d, x);
 
+	if (s->coordinate[p->d] == COORDINATE_STRETCH)
+		return exp(value);
 	if ((s->coordinate[p->d] == COORDINATE_GAMMA || s->coordinate[p->d] == COORDINATE_SECOND_GAMMA) && open &&
 	    direction > 0 && isinf(ndf_param_at(p->context->class, 1)->max))
 		return INFINITY;
@@ -326,8 +342,11 @@ static void add_interval(struct interval_list *list, const struct interval *inte
 	if (list->n == INTERVALS_MAX)
 		return;
 	list->at[list->n++] = *interval;
-	while (unite_one(list))
-		continue;
+	bool united;
+
+	do
+		united = unite_one(list);
+	while (united);
 	if (list->n > 1)
 		qsort(&list->at[1], (size_t)list->n - 1, sizeof list->at[0], by_place);
 }
@@ -380,6 +399,27 @@ static enum status open_profile(struct profile *p)
 	return status;
 }
 
+/* Of lobes and axes another valley is the same fit with them changed over. */
+static bool has_other_valleys(const struct profile *p)
+{
+	const enum coordinate coordinate = p->context->space.coordinate[p->d];
+
+	return p->context->options->lobes < 2 && coordinate != COORDINATE_STRETCH && coordinate != COORDINATE_ANGLE;
+}
+
+/* The axes by their ratio and angle. Both keep the place of the coordinate that they take: the scan has nothing to say of either. */
+static void use_ratio_and_angle(struct space *s)
+{
+	for (int d = 0; d < s->dims; d++)
+		if (s->coordinate[d] == COORDINATE_STRETCH_COS) {
+			s->coordinate[d] = COORDINATE_STRETCH;
+		} else if (s->coordinate[d] == COORDINATE_STRETCH_SIN) {
+			s->coordinate[d] = COORDINATE_ANGLE;
+			s->lowest[d] = s->lo[d] = -360; /* no end is where it may be */
+			s->highest[d] = s->hi[d] = 360;
+		}
+}
+
 /* The intervals of dimension d of the space. */
 static enum status find_intervals(struct profile_context *c, int d, struct interval_list *list)
 {
@@ -388,7 +428,9 @@ static enum status find_intervals(struct profile_context *c, int d, struct inter
 
 	if (status != STATUS_OK)
 		return status;
-	for (int n = 0; n < c->n_minima && status == STATUS_OK; n++) {
+	const bool others = has_other_valleys(&p);
+
+	for (int n = 0; n < (others ? c->n_minima : 1) && status == STATUS_OK; n++) {
 		struct interval interval;
 
 		status = interval_around(&p, &c->minimum[n], &interval);
@@ -396,7 +438,7 @@ static enum status find_intervals(struct profile_context *c, int d, struct inter
 			add_interval(list, &interval);
 	}
 	/* The scan has seen no values of a conductor's n or k. */
-	if (status == STATUS_OK && c->options->lobes < 2 && c->space.coordinate[d] == c->searched.coordinate[d])
+	if (status == STATUS_OK && others && c->space.coordinate[d] == c->searched.coordinate[d])
 		status = add_from_scan(&p, list);
 	objective_free(&p.full);
 	objective_free(&p.sample);
@@ -421,6 +463,10 @@ static enum interval_parameter parameter_of(enum coordinate coordinate)
 		return INTERVAL_SIGMA2;
 	case COORDINATE_SECOND_GAMMA:
 		return INTERVAL_GAMMA2;
+	case COORDINATE_STRETCH:
+		return INTERVAL_RATIO;
+	case COORDINATE_ANGLE:
+		return INTERVAL_ANGLE;
 	default:
 		return INTERVAL_PARAMETERS;
 	}
@@ -476,6 +522,7 @@ enum status interval_find(const struct multiresolution *multiresolution, const s
 
 	if (status != STATUS_OK)
 		return status;
+	use_ratio_and_angle(&c.space);
 #pragma omp parallel for num_threads(options->threads) schedule(dynamic) if (options->threads > 1)
 	for (int d = 0; d < c.space.dims; d++) {
 		const enum interval_parameter parameter = parameter_of(c.space.coordinate[d]);

@@ -18,6 +18,8 @@ enum interval_parameter {
 	INTERVAL_EXPONENT, /* of the grazing term */
 	INTERVAL_SIGMA2,   /* of the second lobe */
 	INTERVAL_GAMMA2,
+	INTERVAL_RATIO, /* sigma_x/sigma_y of an anisotropic shape, the angle refitted: below 1 the axes have changed over */
+	INTERVAL_ANGLE, /* degrees, within 90 of the fit's on either side, so perhaps beyond those */
 	INTERVAL_PARAMETERS
 };
 
@@ -42,8 +44,8 @@ struct interval_list {
 
 /* interval_find - those of the free parameters at the optimum *best, whose E on the full table is `error`: where the least
  * E at a value is at most (1 + percent/100) times that, or 1e-6 above it; E is met to about a hundredth of
- * the percentage. Nothing for a tabulated NDF. Of two lobes only the interval
- * around the fit is found: another valley would be the same fit with the lobes changed over. Counts the shapes that it evaluates in *evaluations.
+ * the percentage. Nothing for a tabulated NDF. Of two lobes, and of the axes, only the interval
+ * around the fit is found: another valley would be the same fit with lobes or axes changed over. Counts the shapes that it evaluates in *evaluations.
  * Errors: STATUS_NO_MEMORY, STATUS_INTERRUPTED */
 MUST_CHECK enum status interval_find(const struct multiresolution *multiresolution, const struct fit_options *options,
 				     const struct ndf_class *class, const struct shape *best, double error,

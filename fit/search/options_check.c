@@ -64,6 +64,11 @@ static enum status check_ranges(const struct fit_options *o, struct error *error
 				 FIT_IOR_MAX, o->ior);
 	if (o->gamma <= 0)
 		return error_set(error, STATUS_DOMAIN, "expected gamma above 0, found %g", o->gamma);
+	if (!free_or_within(o->grazing_exponent, FIT_GRAZING_MIN, FIT_GRAZING_MAX))
+		return error_set(error, STATUS_DOMAIN, "expected exponent in [%g, %g], found %g", FIT_GRAZING_MIN,
+				 FIT_GRAZING_MAX, o->grazing_exponent);
+	if (o->lobes < 1 || o->lobes > 2)
+		return error_set(error, STATUS_DOMAIN, "expected 1 or 2 lobes, found %d", o->lobes);
 	if (o->starts < 0 || o->starts > FIT_STARTS_MAX)
 		return error_set(error, STATUS_DOMAIN, "expected starts in 0 .. %d, found %d", FIT_STARTS_MAX,
 				 o->starts);

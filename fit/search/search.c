@@ -653,17 +653,37 @@ enum status search_run(const struct multiresolution *multiresolution, const stru
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }
 
+/* The error of the only shape of a space, on the sample that estimates end with. */
+static enum status estimate_only_shape(const struct search *s, struct space_point *point)
+{
+	const struct shape shape = space_shape(&s->space, point->x);
+	struct objective o;
+	const enum status status =
+		objective_init(&o, &s->multiresolution->table[1], s->options, s->class, 1, MASKING_COARSE);
+
+	if (status != STATUS_OK)
+		return status;
+	point->error = objective_eval(&o, &shape, 1e-5, false, &point->linear);
+	objective_free(&o);
+	return STATUS_OK;
+}
+
 enum status search_estimate(const struct multiresolution *multiresolution, const struct fit_options *options,
-			    const struct ndf_class *class, double *error)
+			    const struct ndf_class *class, const struct shape given[], int n_given, struct shape *shape,
+			    double *error)
 {
 	struct search s = new_search(multiresolution, options, class);
 	struct space_point *point = calloc(FIRST_POINTS_MAX, sizeof *point);
 	struct scan_minima *minima = calloc(1, sizeof *minima);
 	struct found found = {.starts = 0};
 	enum status status = point && minima ? STATUS_OK : STATUS_NO_MEMORY;
-	int count = 1;
+	int count = n_given > 0 ? n_given : 1, best = 0;
 
-	if (status == STATUS_OK && s.space.dims > 0)
+	for (int n = 0; n < n_given && status == STATUS_OK; n++)
+		space_from_shape(&s.space, &given[n], point[n].x);
+	if (status == STATUS_OK && s.space.dims == 0)
+		status = estimate_only_shape(&s, point);
+	else if (status == STATUS_OK && n_given == 0)
 		count = first_points(&s, point, minima, &status);
 	for (int level = 0; level < 2 && status == STATUS_OK && s.space.dims > 0; level++) {
 		if (level > 0)
@@ -671,8 +691,13 @@ enum status search_estimate(const struct multiresolution *multiresolution, const
 		status = refine_all(&s, level, point, count, &found);
 	}
 	*error = INFINITY;
-	for (int n = 0; n < count && status == STATUS_OK && s.space.dims > 0; n++)
-		*error = fmin(*error, point[n].error);
+	for (int n = 1; n < count && status == STATUS_OK; n++)
+		if (point[n].error < point[best].error)
+			best = n;
+	if (status == STATUS_OK && count > 0) {
+		*error = point[best].error;
+		*shape = space_shape(&s.space, point[best].x);
+	}
 	free(minima);
 	free(point);
 	if (status != STATUS_OK)
@@ -703,6 +728,27 @@ enum status search_minima(const struct multiresolution *multiresolution, const s
 	memcpy(minimum, point, (size_t)*n * sizeof *minimum);
 	*evaluations += s.evaluations;
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
+}
+
+enum status search_near(const struct multiresolution *multiresolution, const struct fit_options *options,
+			const struct ndf_class *class, const struct shape *shape, double enough, double *error)
+{
+	const struct local_settings settings = {NLOPT_LN_SBPLX, 0.7, 1e-2, 40, false, enough};
+	struct search s = new_search(multiresolution, options, class);
+	struct space_point point = {.error = 0};
+	struct objective o;
+	enum status status = objective_init(&o, &multiresolution->table[0], options, class, 1, MASKING_COARSE);
+
+	*error = INFINITY;
+	if (status != STATUS_OK)
+		return status;
+	space_from_shape(&s.space, shape, point.x);
+	if (s.space.dims > 0)
+		status = local_descend(&s.space, &o, &settings, NULL, NULL, &point, NULL);
+	if (status == STATUS_OK && s.space.dims > 0)
+		*error = point.error;
+	objective_free(&o);
+	return status;
 }
 
 enum status search_from(const struct multiresolution *multiresolution, const struct fit_options *options,

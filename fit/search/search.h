@@ -42,10 +42,12 @@ MUST_CHECK enum status search_run(const struct multiresolution *multiresolution,
 				  const struct ndf_class *class, struct scan_minima *minima, struct found *found);
 
 /* search_estimate - about what search_run() would end with, from the two smallest samples alone: *error is within 0.3 % of
- * it as a rule, for a quarter of the work.
+ * it as a rule, for a quarter of the work; *shape is where. given: shapes to go down from, SEARCH_GIVEN at most; n_given 0: from a scan.
+ * Where there is nothing to search, E of the space's only shape.
  * Errors:  as search_run() */
 MUST_CHECK enum status search_estimate(const struct multiresolution *multiresolution, const struct fit_options *options,
-				       const struct ndf_class *class, double *error);
+				       const struct ndf_class *class, const struct shape given[], int n_given,
+				       struct shape *shape, double *error);
 
 /* search_minima - the local minima that the scan leads to, refined on the samples up to `level`, best first: at most n_max
  * of those whose E is within `margin` (relative) of the least; and what the scan has shown. Counts the shapes that it
@@ -55,6 +57,13 @@ MUST_CHECK enum status search_minima(const struct multiresolution *multiresoluti
 				     const struct ndf_class *class, int level, double margin,
 				     struct space_point point[], int n_max, int *n, struct scan_minima *scan,
 				     _Atomic long *evaluations);
+
+/* search_near - whether there is an E below `enough` near a shape: *error is one, or the least of forty evaluations, on the
+ * smallest sample alone; INFINITY if there is nothing to search.
+ * Errors:  as search_run() */
+MUST_CHECK enum status search_near(const struct multiresolution *multiresolution, const struct fit_options *options,
+				   const struct ndf_class *class, const struct shape *shape, double enough,
+				   double *error);
 
 /* search_from - goes down from the given shapes only (at most SEARCH_GIVEN), against a shape that is known already and
  * its error: what leads there, or to nothing better, is given up early. If all is, found->linear.error is INFINITY. Of two

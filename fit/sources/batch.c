@@ -109,26 +109,32 @@ static void drop_known(const struct batch *batch, const struct result_source *so
 	fit->n_ndf = kept;
 }
 
-/* The options as asked for, and which terms --within has left out. Owned; NULL when out of memory. */
+/* The options as asked for, and which terms --within has left out or put in. Owned; NULL when out of memory. */
 static char *chosen_text(const char *asked, const struct fit_options *all, const struct fit_options *chosen)
 {
 	const struct {
 		bool is;
 		const char *word;
-	} left_out[] = {{chosen->gray && !all->gray, "gray"},
-			{chosen->gray_specular && !all->gray_specular, "gray-specular"},
-			{!chosen->diffuse && all->diffuse, "no-diffuse"},
-			{!chosen->specular && all->specular, "no-specular"},
-			{chosen->specular && chosen->fresnel != all->fresnel, "no-fresnel"},
-			{chosen->specular && !chosen->anisotropic && all->anisotropic, "isotropic"}};
+	} change[] = {
+		{chosen->gray && !all->gray, "gray"},
+		{chosen->gray_specular && !all->gray_specular, "gray-specular"},
+		{!chosen->diffuse && all->diffuse, "no-diffuse"},
+		{!chosen->specular && all->specular, "no-specular"},
+		{chosen->specular && chosen->fresnel != all->fresnel && chosen->fresnel == FRESNEL_NONE, "no-fresnel"},
+		{chosen->specular && chosen->fresnel != all->fresnel && chosen->fresnel == FRESNEL_F82, "f82"},
+		{chosen->grazing && !all->grazing, "burley"},
+		{!chosen->grazing && all->grazing, "lambert"},
+		{chosen->specular && chosen->lobes > all->lobes, "two-lobes"},
+		{chosen->specular && chosen->lobes < all->lobes, "one-lobe"},
+		{chosen->specular && !chosen->anisotropic && all->anisotropic, "isotropic"}};
 	struct text_stream stream;
 	const char *between = RESULT_CHOSEN;
 	if (!text_stream_open(&stream))
 		return NULL;
 	fputs(asked, stream.file);
-	for (size_t i = 0; i < sizeof left_out / sizeof *left_out; i++)
-		if (left_out[i].is) {
-			fprintf(stream.file, "%s%s", between, left_out[i].word);
+	for (size_t i = 0; i < sizeof change / sizeof *change; i++)
+		if (change[i].is) {
+			fprintf(stream.file, "%s%s", between, change[i].word);
 			between = "+";
 		}
 	return text_stream_close(&stream);
@@ -140,7 +146,10 @@ static enum status fit_within(const struct fit_context *context, const struct me
 			      struct result_source *source, char **text, struct error *error)
 {
 	const struct fit_options all = *fit;
-	const enum status status = within_run(context, measurement, fit, options->within, fit, result, error);
+	const unsigned richer = (options_given(options, "diffuse") ? 0u : WITHIN_BURLEY) |
+				(options_given(options, "fresnel") ? 0u : WITHIN_F82) |
+				(options_given(options, "lobes") ? 0u : WITHIN_TWO_LOBES);
+	const enum status status = within_run(context, measurement, fit, richer, options->within, fit, result, error);
 	if (status != STATUS_OK)
 		return status;
 	*text = chosen_text(source->options, &all, fit);
@@ -173,6 +182,17 @@ static enum status fit_centres(struct run *run, const struct measurement *measur
 	return status;
 }
 
+/* What only the fits can tell of the data. */
+static void note_correlated(struct batch_file *file, const struct fit_result result[], int n)
+{
+	for (int i = 0; i < n; i++)
+		if (!isnan(result[i].error_correlated)) {
+			file->suspects.found |= SUSPECT_CORRELATED;
+			file->suspects.correlated = result[i].error_correlated;
+			suspects_words(&file->suspects, file->words);
+		}
+}
+
 /* Fits what *fit asks for under weight w. */
 static enum status fit_samples(struct run *run, struct batch_file *file, const struct measurement *measurement, int w,
 			       struct fit_options *fit)
@@ -191,6 +211,7 @@ static enum status fit_samples(struct run *run, struct batch_file *file, const s
 		status = fit_run(context, measurement, fit, result, &file->error);
 	if (status != STATUS_OK)
 		return status;
+	note_correlated(file, result, fit->n_ndf);
 	if (!isnan(options->intervals) && fit->specular)
 		status = fit_intervals(context, measurement, fit, options->intervals, result, &file->error);
 	if (status == STATUS_OK && options->both_bins && !measurement->scattered)

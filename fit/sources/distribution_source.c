@@ -35,6 +35,7 @@ static enum status describe(const struct options *options, struct described *ite
 		.name = options->path[0],
 		.sigma = item->sigma,
 		.sigma_y = item->sigma_y,
+		.angle = csv_number(item->angle, options->fit.angle),
 		.gamma = options->gamma_words,
 		.params = options->params,
 		.nodes = options->nodes,

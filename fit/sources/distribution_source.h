@@ -12,7 +12,7 @@ struct described {
 	struct distribution distribution;
 	struct distribution_words words; /* point to what is borrowed, or to the texts below */
 	enum gaf gaf;
-	char sigma[CSV_NUMBER_SIZE], sigma_y[CSV_NUMBER_SIZE], gamma[CSV_NUMBER_SIZE];
+	char sigma[CSV_NUMBER_SIZE], sigma_y[CSV_NUMBER_SIZE], angle[CSV_NUMBER_SIZE], gamma[CSV_NUMBER_SIZE];
 	char params[NDF_PARAMS_MAX * 2 * CSV_NUMBER_SIZE];
 };
 
