@@ -64,7 +64,7 @@ test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 # Attacks on inputs, outputs and memory, and fits of hard tables: half of the time of all tests.
 only_long := alloc convert export export_axes fetch free_form hostile hostile_names hostile_outputs outputs plot resample richer slurm stiff suspects terminal
 # Some cases in check, all in check-long: check.h, case_step().
-with_long_cases := anisotropic dielectric fit given_ndf interval objective python random_walk report scattered_fit
+with_long_cases := anisotropic conductor dielectric fit given_ndf interval objective python random_walk report scattered_fit
 short_programs := $(filter-out $(only_long:%=$(BUILD)/tests/test_%),$(test_programs))
 long_programs := $(foreach t,$(only_long) $(with_long_cases),$(BUILD)/tests/test_$(t))
 

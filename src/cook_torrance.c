@@ -3,8 +3,10 @@
 
 double cook_torrance_F(const struct cook_torrance *model, int c, double cos_d)
 {
-	return model->fresnel == FRESNEL_F82 ? fresnel_f82(cos_d, model->reflectance[c])
-					     : fresnel_F(model->fresnel, cos_d, model->n, model->k);
+	if (model->fresnel == FRESNEL_F82)
+		return fresnel_f82(cos_d, model->reflectance[c]);
+	return model->per_channel_ior ? fresnel_F(model->fresnel, cos_d, model->channel_n[c], model->channel_k[c])
+				      : fresnel_F(model->fresnel, cos_d, model->n, model->k);
 }
 
 double cook_torrance_facets(const struct ndf *ndf, enum gaf gaf, struct vec3 wi, struct vec3 wo, double *cos_d)
@@ -30,7 +32,8 @@ double cook_torrance_lobe(const struct cook_torrance *model, struct vec3 wi, str
 {
 	double cos_d;
 	const double facets = cook_torrance_facets(&model->ndf, model->gaf, wi, wo, &cos_d);
-	return facets == 0.0 ? 0.0 : fresnel_F(model->fresnel, cos_d, model->n, model->k) * facets;
+	const double F = model->fresnel == FRESNEL_F82 ? 1.0 : cook_torrance_F(model, 0, cos_d);
+	return facets == 0.0 ? 0.0 : F * facets;
 }
 
 void cook_torrance_f(const struct cook_torrance *model, struct vec3 wi, struct vec3 wo, double f[3])

@@ -92,7 +92,7 @@ static void check_found(const struct found *f, const struct trace *trace, double
 	check_between(f->linear.error, 0, trace->point[0].error * (1 + 1e-4), label);
 	check_between(f->linear.lower_bound, 0, f->linear.error + 1e-7, label);
 	check_between(f->shape.sigma, FIT_SIGMA_MIN, FIT_SIGMA_MAX, label);
-	check_between(f->shape.ior, FIT_IOR_MIN, FIT_IOR_MAX, label);
+	check_between(f->shape.ior, FIT_CONDUCTOR_IOR_MIN, FIT_IOR_MAX, label);
 	for (int c = 0; c < 3; c++) {
 		check_between(f->linear.kd[c], 0, largest_factor, label);
 		check_between(f->linear.coefficient[c][1], 0, largest_factor, label);

@@ -673,6 +673,24 @@ static void merl_is_the_model(void **state)
 	assert_int_equal(remove("made.binary"), 0);
 }
 
+/* Where a target has one index for all channels, what stands there has n and k that all share, and ks the colour. */
+static void an_index_for_each_channel_is_replaced(void **state)
+{
+	(void)state;
+	export_it("--format mitsuba --ks 0.9 --ndf ggx --sigma 0.3 --fresnel conductor --ior 0.16,0.42,1.38 "
+		  "--k 3.6,2.47,1.92");
+	expect_part(last.out, "no index of its own for each channel", __LINE__);
+	expect_part(last.out, "roughconductor", __LINE__);
+	const char *ks = strstr(last.out, "specular_reflectance\" value=\"");
+	double rgb[3];
+
+	assert_int_equal(
+		sscanf(ks ? ks : "", "specular_reflectance\" value=\"%lf, %lf, %lf", &rgb[0], &rgb[1], &rgb[2]), 3);
+	assert_true(rgb[0] > 1.05 * rgb[1] && rgb[1] > 1.2 * rgb[2]);
+	stdfit("export --format brdf --ks 0.9 --ndf ggx --sigma 0.3 --fresnel conductor --ior 0.16,0.42,1.38 --k 3");
+	expect_error(1, "an index for each channel");
+}
+
 /* JSON */
 
 static void json_is_the_model(void **state)
@@ -682,6 +700,7 @@ static void json_is_the_model(void **state)
 		LOBE " --sigma 0.123456789012345678 --ndf beckmann --gaf v-groove --fresnel none",
 		LOBE " --sigma 0.2 --ndf ggx --gaf correlated --fresnel schlick --ior 2.2",
 		LOBE " --sigma 0.2 --gamma inf --fresnel conductor --ior 1.7 --k 3.3",
+		LOBE " --sigma 0.2 --gamma inf --fresnel conductor --ior 0.16,0.42,1.38 --k 3.6,2.47,1.92",
 		LOBE " --sigma 0.2 --gamma 1.2 --ndf gtr",
 		LOBE " --sigma 0.2 --gamma 0.7 --ndf low --bins centre --max-theta 70",
 		LOBE " --sigma 0.2 --gamma 2.3 --ndf hyper-cauchy",
@@ -1111,6 +1130,7 @@ int main(void)
 		cmocka_unit_test(pbrt_has_colours_in_its_index),
 		cmocka_unit_test(gltf_is_fitted_in_its_own_terms),
 		cmocka_unit_test(merl_is_the_model),
+		cmocka_unit_test(an_index_for_each_channel_is_replaced),
 		cmocka_unit_test(json_is_the_model),
 		cmocka_unit_test(json_holds_a_table_of_nodes),
 		cmocka_unit_test(bad_json_is_reported),

@@ -334,11 +334,11 @@ static void shader_is_the_model_with_axes(void **state)
 
 static void shader_is_the_model_for_indices_near_1_and_far(void **state)
 {
-	static const double n[] = {1.0001, 1.01, 3, 38.575, 100}, k[] = {0, 1e-3, 0.5, 8, 100};
+	static const double n[] = {1.0001, 1.01, 3, 38.575, 100, 0.04, 0.6}, k[] = {0, 1e-3, 0.5, 8, 100};
 
 	(void)state;
-	for (int i = 0; i < 5; i++)
-		for (int j = 0; j < 5; j++) {
+	for (int i = 0; i < 7; i++)
+		for (int j = i < 5 ? 0 : 1; j < 5; j++) {
 			struct cook_torrance model = make_model("ggx", 0.4, 2, n[i]);
 			char label[100];
 

@@ -362,6 +362,19 @@ static void nodes_are_the_model(void **state)
 }
 
 /* The factor of the specification, its albedo by quadrature. */
+static void an_index_for_each_channel_is_in_the_node(void **state)
+{
+	struct cook_torrance model = given(0.23, FRESNEL_CONDUCTOR);
+
+	(void)state;
+	model.per_channel_ior = true;
+	memcpy(model.channel_n, (double[]){0.16, 0.42, 1.38}, sizeof model.channel_n);
+	memcpy(model.channel_k, (double[]){3.6, 2.47, 1.92}, sizeof model.channel_k);
+	export_it(LOBE "--ndf ggx --sigma 0.23 --gaf correlated --fresnel conductor --ior 0.16,0.42,1.38 "
+		       "--k 3.6,2.47,1.92");
+	expect_nodes(&model);
+}
+
 static void further_reflections_are_stated(void **state)
 {
 	const struct cook_torrance model = given(0.7, FRESNEL_NONE);
@@ -442,9 +455,13 @@ static void xmllint_takes_it(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(nodes_are_the_model),     cmocka_unit_test(further_reflections_are_stated),
-		cmocka_unit_test(others_get_a_substitute), cmocka_unit_test(names_are_valid),
-		cmocka_unit_test(xmllint_takes_it),        cmocka_unit_test(axes_are_those_of_the_roughness),
+		cmocka_unit_test(nodes_are_the_model),
+		cmocka_unit_test(an_index_for_each_channel_is_in_the_node),
+		cmocka_unit_test(further_reflections_are_stated),
+		cmocka_unit_test(others_get_a_substitute),
+		cmocka_unit_test(names_are_valid),
+		cmocka_unit_test(xmllint_takes_it),
+		cmocka_unit_test(axes_are_those_of_the_roughness),
 	};
 
 	return cmocka_run_group_tests(tests, enter_directory, leave_directory);

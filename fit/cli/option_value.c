@@ -121,8 +121,10 @@ const struct option_spec option_specs[] = {
 	{"no-specular", 0, KIND_OFF, SEARCHES | SOURCES, RECORDED, NULL, "ks = 0", AT(fit.specular), 0, 0},
 	{"gray", 0, KIND_ON, SEARCHES | SOURCES, RECORDED, NULL, "one kd and one ks for the three channels",
 	 AT(fit.gray), 0, 0},
-	{"ior", 0, KIND_NUMBER, SEARCHES, RECORDED, "N", "fix the index of refraction", AT(fit.ior), FIT_IOR_MIN,
-	 FIT_IOR_MAX},
+	{"ior", 0, KIND_NUMBER, SEARCHES, RECORDED, "N", "fix the index of refraction", AT(fit.ior),
+	 FIT_CONDUCTOR_IOR_MIN, FIT_IOR_MAX},
+	{"per-channel-ior", 0, KIND_ON, SEARCHES | SOURCES, RECORDED_GIVEN, NULL,
+	 "with --fresnel conductor: each channel has an n and k of its own", AT(fit.per_channel_ior), 0, 0},
 	{"gamma", 0, KIND_GAMMA, SEARCHES, RECORDED, "G", "fix the shape gamma (STD: above 1.5; inf is Beckmann)",
 	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
 	{"sigma", 0, KIND_SIGMA, SEARCHES, RECORDED, "S|SX,SY", "fix the roughness; with --anisotropic along both axes",
@@ -170,7 +172,9 @@ const struct option_spec option_specs[] = {
 	 AT(fit.angle), -360, 360},
 	{"gamma", 0, KIND_GAMMA, MODEL, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann)",
 	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
-	{"ior", 0, KIND_NUMBER, MODEL, NOT_RECORDED, "N", "index of refraction", AT(fit.ior), FIT_IOR_MIN, FIT_IOR_MAX},
+	{"ior", 0, KIND_INDEX, MODEL, NOT_RECORDED, "N|R,G,B",
+	 "index of refraction; below 1.0001, or one for each channel, with --fresnel conductor", AT(fit.ior),
+	 FIT_CONDUCTOR_IOR_MIN, FIT_IOR_MAX},
 	{"sigma", 0, KIND_SIGMA, SOURCES, NOT_RECORDED, "S|SX,SY",
 	 "roughness, along both axes if two: given with --ks, else fixed in the fit", AT(fit.sigma), FIT_SIGMA_MIN,
 	 FIT_SIGMA_MAX},
@@ -178,9 +182,10 @@ const struct option_spec option_specs[] = {
 	 -360, 360},
 	{"gamma", 0, KIND_GAMMA, SOURCES, NOT_RECORDED, "G", "shape gamma (STD: above 1.5; inf is Beckmann), likewise",
 	 AT(fit.gamma), 1e-3, FIT_GAMMA_MAX},
-	{"ior", 0, KIND_NUMBER, SOURCES, NOT_RECORDED, "N", "index of refraction, likewise; with --ks 1.5 if not given",
-	 AT(fit.ior), FIT_IOR_MIN, FIT_IOR_MAX},
-	{"k", 0, KIND_NUMBER, MODEL | SOURCES, NOT_RECORDED, "K", "imaginary part of a conductor's index", AT(k), 0,
+	{"ior", 0, KIND_INDEX, SOURCES, NOT_RECORDED, "N|R,G,B",
+	 "index of refraction, likewise; with --ks 1.5 if not given; one for each channel with --ks only", AT(fit.ior),
+	 FIT_CONDUCTOR_IOR_MIN, FIT_IOR_MAX},
+	{"k", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "K|R,G,B", "imaginary part of a conductor's index", AT(k), 0,
 	 FIT_K_MAX},
 	{"kd", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "diffuse factors", AT(kd), 0, FIT_FACTOR_MAX},
 	{"ks", 0, KIND_RGB, MODEL | SOURCES, NOT_RECORDED, "R,G,B", "specular factors", AT(ks), 0, FIT_FACTOR_MAX},
@@ -503,6 +508,16 @@ static enum status parse_rgb(const struct option_spec *spec, const char *text, d
 	return STATUS_OK;
 }
 
+static enum status parse_index(const struct option_spec *spec, const char *text, struct options *options,
+			       struct error *error)
+{
+	const enum status status = parse_rgb(spec, text, options->ior, error);
+	const double *n = options->ior;
+	if (status == STATUS_OK)
+		options->fit.ior = n[0] == n[1] && n[1] == n[2] ? n[0] : NAN;
+	return status;
+}
+
 static enum status expected_choice(enum option_kind kind, struct error *error)
 {
 	char names[256] = "";
@@ -615,6 +630,8 @@ enum status option_parse(struct options *options, const struct option_spec *spec
 		return parse_percent(spec, text, value, error);
 	case KIND_RGB:
 		return parse_rgb(spec, text, value, error);
+	case KIND_INDEX:
+		return parse_index(spec, text, options, error);
 	case KIND_SHARD:
 		return parse_shard(spec, text, value, error);
 	case KIND_PHI:
@@ -686,6 +703,7 @@ void option_write(FILE *file, const struct options *options, const struct option
 	case KIND_GAMMA:
 	case KIND_PERCENT:
 	case KIND_RGB:
+	case KIND_INDEX:
 		fputs(isnan(*(const double *)value) ? "free" : csv_number(number, *(const double *)value), file);
 		break;
 	case KIND_NDFS:
@@ -756,7 +774,8 @@ static bool has_default(const struct options *defaults, const struct option_spec
 		return *(const int *)value >= spec->min;
 	/* A free number is a default of a fit; a model needs one. */
 	return spec->recorded != NOT_RECORDED ||
-	       (spec->kind != KIND_NUMBER && spec->kind != KIND_GAMMA && spec->kind != KIND_SIGMA) ||
+	       (spec->kind != KIND_NUMBER && spec->kind != KIND_GAMMA && spec->kind != KIND_SIGMA &&
+		spec->kind != KIND_INDEX) ||
 	       !isnan(*(const double *)value);
 }
 

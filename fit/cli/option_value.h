@@ -19,6 +19,7 @@ enum option_kind {
 	KIND_SIGMA,   /* the same, or two of them with a comma between: fit.sigma and fit.sigma_y */
 	KIND_PERCENT, /* the same, perhaps with a % behind it */
 	KIND_RGB,     /* double[3], each in [min, max]; one number stands for all three */
+	KIND_INDEX,   /* fit.ior, or one for each channel: ior, and fit.ior is NaN where they differ */
 	KIND_SHARD,   /* struct shard, I/N with N up to max */
 	KIND_PHI,     /* int, 180 or 360 */
 	KIND_NDFS,

@@ -519,6 +519,14 @@ static int check_lambda(const struct options *options)
 	return -1;
 }
 
+/* Only a conductor's n may be below 1. */
+static int low_index(const struct options *options)
+{
+	return options_usage(options->command,
+			     "invalid value for --ior: below %g it needs --fresnel conductor, found %g", FIT_IOR_MIN,
+			     options->fit.ior);
+}
+
 /* Options of the specular term that it does not have, or where there is none. */
 static int check_specular(const struct options *options)
 {
@@ -533,6 +541,12 @@ static int check_specular(const struct options *options)
 	if (!fresnel_has_ior(fit->fresnel) && options_given(options, "ior"))
 		return options_usage(options->command, "--ior means nothing with --fresnel %s",
 				     fresnel_name(fit->fresnel));
+	if (fit->ior < fit_ior_min(fit->fresnel))
+		return low_index(options);
+	if (options_index_per_channel(options))
+		return options_usage(options->command, "--ior R,G,B gives a model, a fit takes one number");
+	if (fit->per_channel_ior && fit->fresnel != FRESNEL_CONDUCTOR)
+		return options_usage(options->command, "--per-channel-ior needs --fresnel conductor");
 	if (options_given(options, "gamma") && !any_has_gamma(fit))
 		return options_usage(options->command, "--gamma means nothing for these NDFs");
 	return check_lambda(options);
@@ -686,6 +700,11 @@ static int check_terms(const struct options *options)
 	return -1;
 }
 
+bool options_index_per_channel(const struct options *options)
+{
+	return options_given(options, "ior") && isnan(options->fit.ior);
+}
+
 /* An option for a term that the model does not have. */
 static int check_model(const struct options *options)
 {
@@ -715,6 +734,10 @@ static int check_model(const struct options *options)
 	if (!fresnel_has_ior(options->fit.fresnel) && options_given(options, "ior"))
 		return options_usage(command, "--ior means nothing with --fresnel %s",
 				     fresnel_name(options->fit.fresnel));
+	if (options->fit.ior < fit_ior_min(options->fit.fresnel))
+		return low_index(options);
+	if (options->fit.fresnel != FRESNEL_CONDUCTOR && options_index_per_channel(options))
+		return options_usage(command, "--ior R,G,B needs --fresnel conductor");
 	if (isnan(options->fit.sigma_y) && !described && options_given(options, "angle"))
 		return options_usage(command, "--angle needs --sigma SX,SY");
 	if (options->fit.fresnel != FRESNEL_CONDUCTOR && options_given(options, "k"))
@@ -769,7 +792,13 @@ int options_model(const struct options *options, struct cook_torrance *model, st
 	*model = (struct cook_torrance){.gaf = fit->criterion.gaf,
 					.fresnel = fit->fresnel,
 					.n = isnan(fit->ior) ? 1.5 : fit->ior,
-					.k = options->k};
+					.k = options->k[0]};
+	model->per_channel_ior =
+		options_index_per_channel(options) || options->k[1] != options->k[0] || options->k[2] != options->k[0];
+	for (int c = 0; c < MERL_CHANNELS && model->per_channel_ior; c++) {
+		model->channel_n[c] = isnan(fit->ior) && options_given(options, "ior") ? options->ior[c] : model->n;
+		model->channel_k[c] = options->k[c];
+	}
 	memcpy(model->kd, options->kd, sizeof model->kd);
 	memcpy(model->ks, options->ks, sizeof model->ks);
 	for (int c = 0; c < MERL_CHANNELS; c++)

@@ -32,7 +32,7 @@ struct options {
 	double within;    /* percent; NaN: every NDF as it is */
 	double intervals; /* percent; NaN: none are sought */
 	/* A model, for eval and synth; its sigma, gamma and ior are those of `fit`. */
-	double kd[3], ks[3], k;
+	double kd[3], ks[3], ior[3], k[3]; /* ior: where given, see KIND_INDEX */
 	double f82[F82_PARTS][3], kg[3], ks2[3], sigma2, gamma2;
 	const char *from; /* the result table that has the model */
 	int row;          /* its row, from 1; 0: the one of this material and NDF */
@@ -74,6 +74,8 @@ MUST_CHECK int options_parse(struct options *options, enum command command, int 
 
 /* options_given - whether the option of this long name is on the command line. */
 bool options_given(const struct options *options, const char *name);
+/* options_index_per_channel - whether --ior gives each channel another index. */
+bool options_index_per_channel(const struct options *options);
 /* options_given_beside - the name of some given option that is not among `expected`, which ends with NULL; NULL: none.
  */
 const char *options_given_beside(const struct options *options, const char *const *expected);

@@ -392,6 +392,8 @@ static int check_glass(const struct options *options)
 		return options_usage(COMMAND_RENDER, "--transmission needs -o");
 	if (options->fit.criterion.gaf == GAF_V_GROOVE)
 		return options_usage(COMMAND_RENDER, "--gaf v-groove is of reflection alone");
+	if (options->fit.ior < FIT_IOR_MIN || options_index_per_channel(options))
+		return options_usage(COMMAND_RENDER, "--ior of glass is one number, %g at least", FIT_IOR_MIN);
 	return check_glass_shape(options);
 }
 

@@ -68,7 +68,8 @@ static enum status begin(struct report *r, struct page *page, FILE *file, const 
 	struct page_picture errors = {
 		.type = "image/svg+xml",
 		.plot = true,
-		.alt = "Error of each fit, a point a material and NDF, materials sorted; the numbers are in the table below.",
+		.alt = "Error of each fit, a point a material and NDF, materials sorted; the numbers are in the table "
+		       "below.",
 		.caption = "Errors of all materials, sorted.",
 	};
 	struct error why;

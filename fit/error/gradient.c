@@ -30,7 +30,7 @@ void gradient_free(struct gradient *g)
 
 /* Floats for one block. */
 struct buffers {
-	_Alignas(64) float weight[KERNEL_TERMS][KERNEL_BLOCK], near[KERNEL_BLOCK];
+	_Alignas(64) float weight[OBJECTIVE_ARRAYS][KERNEL_BLOCK], near[KERNEL_BLOCK];
 };
 
 static void sum_block(const struct gradient *g, const struct linear *linear, int block)
@@ -45,22 +45,24 @@ static void sum_block(const struct gradient *g, const struct linear *linear, int
 	float *weight[KERNEL_TERMS] = {NULL};
 
 	memset(b.weight, 0, sizeof b.weight);
-	for (int t = 1; t < o->terms.n; t++) {
-		term[t] = o->term[t] + at;
-		weight[t] = b.weight[t];
-	}
 	for (int c = 0; c < slices; c++) {
 		double x[KERNEL_TERMS];
 
+		for (int t = 1; t < o->terms.n; t++) {
+			const int array = objective_array(o, t, c);
+
+			term[t] = o->term[array] + at;
+			weight[t] = b.weight[array];
+		}
 		for (int t = 0; t < o->terms.n; t++)
 			x[t] = linear->coefficient[c][t] * table->unit;
 		o->kernel->signs(o->terms.n, members, sample_set_value(table, block, c), term, x, weight);
 	}
 	for (int i = 0; i < g->n; i++) {
 		g->sums[block][i] = 0;
-		for (int t = 1; t < o->terms.n; t++) {
-			objective_term_block(&g->probe[i], t, block, b.near);
-			g->sums[block][i] -= o->kernel->change(weight[t], term[t], b.near);
+		for (int a = 1; a < o->n_arrays; a++) {
+			objective_term_block(&g->probe[i], a, block, b.near);
+			g->sums[block][i] -= o->kernel->change(b.weight[a], o->term[a] + at, b.near);
 		}
 	}
 }

@@ -32,16 +32,33 @@ static bool has_term(const struct objective *o, enum term term)
 	return false;
 }
 
+/* The term that an array is of, and the channel whose F it has. */
+static enum term term_of(const struct objective *o, int array)
+{
+	return array < o->terms.n ? o->terms.term[array] : TERM_LOBE;
+}
+
+static int channel_of(const struct objective *o, int array)
+{
+	return array < o->terms.n ? 0 : 1 + array - o->terms.n;
+}
+
+int objective_array(const struct objective *o, int term, int channel)
+{
+	return o->terms.term[term] == TERM_LOBE && channel > 0 && o->n_arrays > o->terms.n ? o->terms.n + channel - 1
+											   : term;
+}
+
 static enum status init_tables(struct objective *o, enum masking_density density)
 {
 	const int32_t q_min = o->table->geometry->q_min;
 	enum status status = STATUS_OK;
 
 	if (o->table->scattered) {
-		o->scattered = calloc(KERNEL_TERMS, sizeof *o->scattered);
+		o->scattered = calloc(OBJECTIVE_ARRAYS, sizeof *o->scattered);
 		status = o->scattered ? STATUS_OK : STATUS_NO_MEMORY;
-		for (int t = 1; t < o->terms.n && status == STATUS_OK; t++)
-			status = scattered_lobe_init(&o->scattered[t], density);
+		for (int a = 1; a < o->n_arrays && status == STATUS_OK; a++)
+			status = scattered_lobe_init(&o->scattered[a], density);
 		return status;
 	}
 	status = masking_init(&o->lobe[0].masking, q_min, density);
@@ -68,11 +85,12 @@ enum status objective_init(struct objective *o, const struct sample_set *table, 
 	o->lobe[0].tabulated.sigma = o->lobe[1].tabulated.sigma = o->grazing_exponent = NAN;
 	objective_forget(o);
 	objective_unfix(o);
-	for (int t = 1; t < o->terms.n; t++) {
-		o->term[t] = aligned_alloc(64, n * sizeof *o->term[t]);
-		complete &= o->term[t] != NULL;
+	o->n_arrays = o->terms.n + (options->per_channel_ior && options->specular ? MERL_CHANNELS - 1 : 0);
+	for (int a = 1; a < o->n_arrays; a++) {
+		o->term[a] = aligned_alloc(64, n * sizeof *o->term[a]);
+		complete &= o->term[a] != NULL;
 	}
-	o->row = malloc((size_t)o->terms.n * sizeof *o->row);
+	o->row = malloc((size_t)o->n_arrays * sizeof *o->row);
 	o->sums = malloc((size_t)table->n_blocks * sizeof *o->sums);
 	/* Of tilted facets G1 is no function of one number. */
 	o->is_exact = table->scattered && ((density == MASKING_FINE && table->n_samples <= OBJECTIVE_EXACT_SAMPLES) ||
@@ -99,11 +117,11 @@ void objective_free(struct objective *o)
 	for (int l = 0; l < OBJECTIVE_LOBES; l++)
 		masking_free(&o->lobe[l].masking);
 	masking_free(&o->grazing);
-	for (int t = 0; t < KERNEL_TERMS; t++) {
+	for (int a = 0; a < OBJECTIVE_ARRAYS; a++) {
 		if (o->scattered)
-			scattered_lobe_free(&o->scattered[t]);
-		free(o->term[t]);
-		o->term[t] = NULL;
+			scattered_lobe_free(&o->scattered[a]);
+		free(o->term[a]);
+		o->term[a] = NULL;
 	}
 	free(o->scattered);
 	free(o->row);
@@ -126,12 +144,27 @@ struct shape shape_of(const struct cook_torrance *model)
 			      .tilt_y = ndf->tilt_y,
 			      .grazing = model->grazing};
 
+	if (model->per_channel_ior) {
+		shape.ior = NAN;
+		memcpy(shape.channel_ior, model->channel_n, sizeof shape.channel_ior);
+		memcpy(shape.channel_k, model->channel_k, sizeof shape.channel_k);
+	}
 	if (ndf->sigma_x != ndf->sigma_y) {
 		shape.sigma = sqrt(ndf->sigma_x * ndf->sigma_y);
 		shape.stretch = log(ndf->sigma_x / ndf->sigma_y);
 		shape.angle = ndf->angle;
 	}
 	return shape;
+}
+
+void shape_spread_index(struct shape *shape)
+{
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		shape->channel_ior[c] = shape->ior;
+		shape->channel_k[c] = shape->k;
+	}
+	shape->ior = NAN;
+	shape->k = 0;
 }
 
 enum status shape_ndf(const struct shape *shape, const struct ndf_class *class, enum lambda_form lambda,
@@ -177,9 +210,9 @@ static void tabulate_ndf(struct objective *o, int which, const struct ndf *ndf)
 	if (o->table->scattered && o->is_exact && !lobe->given)
 		lobe->exact = *ndf;
 	else if (o->table->scattered)
-		for (int t = 1; t < o->terms.n; t++)
-			if (is_of_facets(o->terms.term[t]) && lobe_of(o->terms.term[t]) == which)
-				scattered_lobe_ndf(&o->scattered[t], &o->table->range, ndf, with_masking);
+		for (int a = 1; a < o->n_arrays; a++)
+			if (is_of_facets(term_of(o, a)) && lobe_of(term_of(o, a)) == which)
+				scattered_lobe_ndf(&o->scattered[a], &o->table->range, ndf, with_masking);
 	if (o->table->scattered && !lobe->given)
 		return;
 	for (int i = 0; i < MERL_THETA_H; i++)
@@ -239,12 +272,12 @@ static enum status tabulate(struct objective *o, const struct shape *shape)
 }
 
 /* F of a term: that of the shape, or the part that one of the three reflectances is the coefficient of. */
-static double F_of_term(const struct objective *o, enum term term, double cos_d)
+static double F_of_term(const struct objective *o, enum term term, int channel, double cos_d)
 {
 	double part[F82_PARTS];
 
 	if (o->options->fresnel != FRESNEL_F82)
-		return fresnel_F(o->options->fresnel, cos_d, o->optics.n, o->optics.k);
+		return cook_torrance_F(&o->optics, channel, cos_d);
 	fresnel_f82_parts(cos_d, part);
 	return part[term - TERM_LOBE];
 }
@@ -252,19 +285,20 @@ static double F_of_term(const struct objective *o, enum term term, double cos_d)
 struct term_F {
 	const struct objective *objective;
 	enum term term;
+	int channel;
 };
 
 static double F_at(const void *data, double cos_d)
 {
 	const struct term_F *of = data;
 
-	return F_of_term(of->objective, of->term, cos_d);
+	return F_of_term(of->objective, of->term, of->channel, cos_d);
 }
 
 /* D F beyond this, a sigma below 1e-10, counts as this: times the largest geometric_factor, 1/(4 1e-9 1e-9), it is still a float. */
 #define ROW_MAX 1e20
 
-static void fill_row(const struct objective *o, enum term term, float row[MERL_ROWS])
+static void fill_row(const struct objective *o, enum term term, int channel, float row[MERL_ROWS])
 {
 	const struct halfdiff_trig *theta = o->table->geometry->entries.theta;
 	const double *D = o->lobe[lobe_of(term)].D;
@@ -272,7 +306,7 @@ static void fill_row(const struct objective *o, enum term term, float row[MERL_R
 
 	for (int j = 0; j < MERL_THETA_D; j++)
 		F[j] = (float)(term == TERM_GRAZING ? theta[j].cos_d * theta[j].cos_d / M_PI
-						    : F_of_term(o, term, theta[j].cos_d));
+						    : F_of_term(o, term, channel, theta[j].cos_d));
 	for (int i = 0; i < MERL_THETA_H; i++) {
 		const float D_i = term == TERM_GRAZING ? 1 : (float)fmin(D[i], ROW_MAX);
 
@@ -286,14 +320,18 @@ static void fill_rows(struct objective *o, const struct shape *shape)
 	o->optics.gaf = o->options->criterion.gaf;
 	o->optics.n = shape->ior;
 	o->optics.k = shape->k;
+	o->optics.fresnel = o->options->fresnel;
+	o->optics.per_channel_ior = o->options->per_channel_ior;
+	memcpy(o->optics.channel_n, shape->channel_ior, sizeof shape->channel_ior);
+	memcpy(o->optics.channel_k, shape->channel_k, sizeof shape->channel_k);
 	o->optics.grazing = shape->grazing;
-	for (int t = 1; t < o->terms.n; t++) {
-		const struct term_F of = {o, o->terms.term[t]};
+	for (int a = 1; a < o->n_arrays; a++) {
+		const struct term_F of = {o, term_of(o, a), channel_of(o, a)};
 
 		if (!o->table->scattered)
-			fill_row(o, of.term, o->row[t]);
+			fill_row(o, of.term, of.channel, o->row[a]);
 		else if ((!o->is_exact || o->lobe[0].given) && is_of_facets(of.term))
-			scattered_lobe_F(&o->scattered[t], &o->table->range, F_at, &of);
+			scattered_lobe_F(&o->scattered[a], &o->table->range, F_at, &of);
 	}
 }
 
@@ -301,8 +339,9 @@ static void fill_rows(struct objective *o, const struct shape *shape)
 #define TERM_MAX 1e30
 
 /* A term at a pair of directions, no table involved. */
-static double exact_term(const struct objective *o, enum term term, struct vec3 wi, struct vec3 wo)
+static double exact_term(const struct objective *o, int array, struct vec3 wi, struct vec3 wo)
 {
+	const enum term term = term_of(o, array);
 	double cos_d;
 
 	if (term == TERM_GRAZING)
@@ -310,10 +349,10 @@ static double exact_term(const struct objective *o, enum term term, struct vec3 
 					     fmin(0.5 * vec3_length(vec3_add(wi, wo)), 1));
 	const double facets = cook_torrance_facets(&o->lobe[lobe_of(term)].exact, o->optics.gaf, wi, wo, &cos_d);
 
-	return facets == 0 ? 0 : F_of_term(o, term, cos_d) * facets;
+	return facets == 0 ? 0 : F_of_term(o, term, channel_of(o, array), cos_d) * facets;
 }
 
-static void exact_block(const struct objective *o, int t, int block, float *term)
+static void exact_block(const struct objective *o, int array, int block, float *term)
 {
 	const struct sample_set *table = o->table;
 	const struct scattered *scattered = table->scattered;
@@ -323,7 +362,7 @@ static void exact_block(const struct objective *o, int t, int block, float *term
 		const struct vec3 wi = scattered->wi[table->entry[n]], wo = scattered->wo[table->entry[n]];
 		const double w = (double)table->w[n];
 
-		term[n - from] = w > 0 ? (float)fmin(w * exact_term(o, o->terms.term[t], wi, wo), TERM_MAX) : 0;
+		term[n - from] = w > 0 ? (float)fmin(w * exact_term(o, array, wi, wo), TERM_MAX) : 0;
 	}
 }
 
@@ -336,36 +375,36 @@ static enum kernel_gaf kernel_gaf(const struct objective *o)
 	return gaf[o->options->criterion.gaf];
 }
 
-static void table_block(const struct objective *o, int t, int block, float *s)
+static void table_block(const struct objective *o, int array, int block, float *s)
 {
 	const size_t at = (size_t)block * KERNEL_BLOCK;
-	const enum term term = o->terms.term[t];
+	const enum term term = term_of(o, array);
 	const bool grazing = term == TERM_GRAZING;
 	const struct kernel_g1 g1 = masking_kernel(grazing ? &o->grazing : &o->lobe[lobe_of(term)].masking);
 	struct kernel_samples samples = sample_set_block(o->table, block);
 
 	if (grazing)
 		samples.geometric_factor = o->table->w + at;
-	o->kernel->lobe(grazing ? KERNEL_SUM : kernel_gaf(o), &g1, o->row[t], &samples, s);
+	o->kernel->lobe(grazing ? KERNEL_SUM : kernel_gaf(o), &g1, o->row[array], &samples, s);
 }
 
-void objective_term_block(const struct objective *o, int t, int block, float *term)
+void objective_term_block(const struct objective *o, int array, int block, float *term)
 {
 	if (!o->table->scattered) {
-		table_block(o, t, block, term);
-	} else if ((o->is_exact && !o->lobe[0].given) || o->terms.term[t] == TERM_GRAZING) {
-		exact_block(o, t, block, term);
+		table_block(o, array, block, term);
+	} else if ((o->is_exact && !o->lobe[0].given) || term_of(o, array) == TERM_GRAZING) {
+		exact_block(o, array, block, term);
 	} else {
 		const struct kernel_scattered samples = sample_set_scattered_block(o->table, block);
 
-		o->kernel->lobe_scattered(kernel_gaf(o), &o->scattered[t].shape, &samples, term);
+		o->kernel->lobe_scattered(kernel_gaf(o), &o->scattered[array].shape, &samples, term);
 	}
 }
 
 static void lobe_block(const struct objective *o, int block)
 {
-	for (int t = 1; t < o->terms.n; t++)
-		objective_term_block(o, t, block, o->term[t] + (size_t)block * KERNEL_BLOCK);
+	for (int a = 1; a < o->n_arrays; a++)
+		objective_term_block(o, a, block, o->term[a] + (size_t)block * KERNEL_BLOCK);
 }
 
 int objective_slices(const struct objective *o)
@@ -386,12 +425,14 @@ static void pass_block(struct objective *o, const struct evaluation *asked, int 
 	const int members = (block < t->n_pair_blocks ? 2 : 1) * MERL_CHANNELS / objective_slices(o);
 	const float *term[KERNEL_TERMS] = {t->w + at};
 
-	for (int n = 1; n < o->terms.n; n++)
-		term[n] = o->term[n] + at;
-	for (int c = 0; c < objective_slices(o); c++)
-		if (asked->wanted[c])
-			o->kernel->pass(o->terms.n, members, sample_set_value(t, block, c), term, &asked->at[c],
-					&o->sums[block][c]);
+	for (int c = 0; c < objective_slices(o); c++) {
+		if (!asked->wanted[c])
+			continue;
+		for (int n = 1; n < o->terms.n; n++)
+			term[n] = o->term[objective_array(o, n, c)] + at;
+		o->kernel->pass(o->terms.n, members, sample_set_value(t, block, c), term, &asked->at[c],
+				&o->sums[block][c]);
+	}
 }
 
 /* The same of values that stand in the unit of a sample set. */
@@ -522,13 +563,22 @@ static bool within_twice(double a, double b)
 	return !(a > 2 * b) && !(b > 2 * a); /* NaN: a parameter that the model lacks */
 }
 
+static bool index_within_twice(double n_a, double k_a, double n_b, double k_b)
+{
+	return within_twice(hypot(n_a - 1, k_a), hypot(n_b - 1, k_b));
+}
+
 /* Whether the inner solve of one shape helps that of another. Second derivatives go with the square of the lobe: handed on
  * to a lobe far smaller, they make a Newton step that is far too short look like the last one. And the ks of a low lobe is
  * no place to begin where the lobe is so high that its own is 1e-8: the way there is too long for a quadratic model. */
 static bool helps(const struct shape *a, const struct shape *b)
 {
-	return within_twice(a->sigma, b->sigma) && within_twice(a->ior - 1, b->ior - 1) && within_twice(a->k, b->k) &&
-	       within_twice(a->second_sigma, b->second_sigma);
+	bool near = within_twice(a->sigma, b->sigma) && within_twice(a->second_sigma, b->second_sigma) &&
+		    index_within_twice(a->ior, a->k, b->ior, b->k);
+
+	for (int c = 0; c < MERL_CHANNELS; c++)
+		near &= index_within_twice(a->channel_ior[c], a->channel_k[c], b->channel_ior[c], b->channel_k[c]);
+	return near;
 }
 
 /* The problems that a solve falls into: one a slice, or one for all where the slices share coefficients. */

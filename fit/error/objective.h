@@ -11,6 +11,8 @@
 /* struct shape - what a fit searches: the parameters in which the model is not linear. */
 struct shape {
 	double sigma, gamma, ior, k;       /* sigma: sqrt(sigma_x sigma_y) where they differ */
+	double channel_ior[MERL_CHANNELS]; /* of options->per_channel_ior, in place of ior and k; else 0 */
+	double channel_k[MERL_CHANNELS];
 	double stretch;                    /* ln(sigma_x/sigma_y); 0: isotropic */
 	double angle;                      /* of the axis of sigma_x, degrees */
 	double tilt_x, tilt_y;             /* ndf_tilt() */
@@ -18,8 +20,9 @@ struct shape {
 	double grazing;                    /* exponent of the grazing term */
 };
 
-/* shape_of - the shape of a model. */
+/* shape_of - the shape of a model; shape_spread_index - gives each channel the ior and k that all share. */
 struct shape shape_of(const struct cook_torrance *model);
+void shape_spread_index(struct shape *shape);
 
 /* shape_ndf - the distribution of a shape, with Lambda in the given form where the class has it, else exact.
  * Returns STATUS_DOMAIN where the class does not take the shape, or the form not its gamma.
@@ -66,7 +69,8 @@ void linear_set_model(const struct linear *linear, const struct fit_options *opt
 /* An error that no fit can have (all coefficients 0 gives 1), finite as nlopt wants it. */
 #define OBJECTIVE_NO_FIT 1e3
 
-enum { OBJECTIVE_LOBES = 2 };
+/* Where channels have an F of their own, the lobe of green and of blue stand behind the terms. */
+enum { OBJECTIVE_LOBES = 2, OBJECTIVE_ARRAYS = KERNEL_TERMS + MERL_CHANNELS - 1 };
 
 struct objective {
 	const struct sample_set *table;
@@ -83,13 +87,14 @@ struct objective {
 		bool given;             /* objective_use() has said which D and G1 */
 		struct shape tabulated; /* the shape that masking and D stand for, ior and k aside */
 	} lobe[OBJECTIVE_LOBES];
-	struct scattered_lobe *scattered; /* for scattered entries, in their place: one a term */
+	int n_arrays;                     /* of `term` and `row`: one a term, and those of green and blue */
+	struct scattered_lobe *scattered; /* for scattered entries, in their place: one an array */
 	struct masking grazing;           /* the grazing term's function of a direction, */
 	double grazing_exponent;          /* for this exponent */
 	struct cook_torrance optics;      /* F of the shape, and G */
-	bool is_exact;             /* scattered entries whose terms are had without tables: few, or of tilted facets */
-	float *term[KERNEL_TERMS]; /* a float a sample; [0] is not used: it is the weight */
-	float (*row)[MERL_ROWS];   /* one a term */
+	bool is_exact; /* scattered entries whose terms are had without tables: few, or of tilted facets */
+	float *term[OBJECTIVE_ARRAYS];             /* a float a sample; [0] is not used: it is the weight */
+	float (*row)[MERL_ROWS];                   /* one an array */
 	struct kernel_sums (*sums)[MERL_CHANNELS]; /* one set a block */
 	long passes;                               /* over the table, so far */
 	struct linear start;                       /* where the next inner solve begins: the last one's end */
@@ -123,9 +128,11 @@ void objective_unfix(struct objective *objective);
 void objective_use(struct objective *objective, const struct ndf *ndf);
 
 /* objective_tabulate - the tables of a shape from which its terms are computed. Returns STATUS_DOMAIN outside the NDF's domain.
- * objective_term_block - term t >= 1 of one block of samples, from them. */
+ * objective_term_block - array >= 1 of one block of samples, from them. */
 MUST_CHECK enum status objective_tabulate(struct objective *objective, const struct shape *shape);
-void objective_term_block(const struct objective *objective, int t, int block, float *term);
+void objective_term_block(const struct objective *objective, int array, int block, float *term);
+/* objective_array - the array of a term for one channel. */
+int objective_array(const struct objective *objective, int term, int channel);
 
 /* objective_slices - a solve goes over slices: a channel each, or one that stands for all. */
 int objective_slices(const struct objective *objective);

@@ -47,6 +47,7 @@ static inline bool criterion_equal(const struct criterion *a, const struct crite
 #define FIT_GAMMA_MAX 1000.0
 #define FIT_IOR_MIN 1.0001
 #define FIT_IOR_MAX 100.0
+#define FIT_CONDUCTOR_IOR_MIN 0.01 /* a conductor's n may be below 1 */
 #define FIT_K_MAX 100.0
 #define FIT_GRAZING_MIN 1.0 /* exponent of the grazing term */
 #define FIT_GRAZING_MAX 20.0
@@ -83,6 +84,7 @@ struct fit_options {
 	bool grazing;       /* a diffuse term of grazing directions beside Lambert's, see cook_torrance_grazing(); */
 	double grazing_exponent;  /* its exponent, or NaN */
 	double ior, gamma, sigma; /* fixed value, or NaN */
+	bool per_channel_ior;     /* FRESNEL_CONDUCTOR: an n and k for each channel; ior is NaN then */
 	bool anisotropic;         /* sigma_x and sigma_y may differ; the isotropic fit is made beside it */
 	double sigma_y;           /* anisotropic: fixed with sigma, which is sigma_x then, or NaN */
 	double angle;             /* anisotropic: fixed azimuth of the axis of sigma_x, degrees, or NaN */
@@ -105,6 +107,12 @@ static inline bool fit_cancelled(const struct fit_options *options)
 {
 	return (options->cancel && atomic_load_explicit(options->cancel, memory_order_relaxed)) ||
 	       (options->stop && __atomic_load_n(options->stop, __ATOMIC_RELAXED));
+}
+
+/* fit_ior_min - the least n that a fit with this Fresnel term takes. */
+static inline double fit_ior_min(enum fresnel fresnel)
+{
+	return fresnel == FRESNEL_CONDUCTOR ? FIT_CONDUCTOR_IOR_MIN : FIT_IOR_MIN;
 }
 
 /* struct fit_options' defaults: STD, GGX and Beckmann, the paper's model and error, as many threads as OpenMP

@@ -103,7 +103,7 @@ const struct export_target export_merl = {.name = "merl", .prepare = merl_prepar
 void export_describe(const struct export *export, char text[EXPORT_TEXT])
 {
 	const struct cook_torrance *model = &export->model;
-	char name[TEXT_QUOTE_SIZE] = "a model", number[CSV_NUMBER_SIZE];
+	char name[TEXT_QUOTE_SIZE] = "a model", number[CSV_NUMBER_SIZE], k[CSV_NUMBER_SIZE];
 	int used;
 	if (export->source.material)
 		text_quote(export->source.material, name, sizeof name);
@@ -132,9 +132,12 @@ void export_describe(const struct export *export, char text[EXPORT_TEXT])
 	}
 	used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", %s G, %s F", gaf_name(model->gaf),
 			 fresnel_name(model->fresnel));
-	if (fresnel_has_ior(model->fresnel))
+	for (int c = 0; c < MERL_CHANNELS && model->per_channel_ior; c++)
+		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", %c: n %s k %s", "RGB"[c],
+				 csv_number(number, model->channel_n[c]), csv_number(k, model->channel_k[c]));
+	if (fresnel_has_ior(model->fresnel) && !model->per_channel_ior)
 		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", n %s", csv_number(number, model->n));
-	if (model->fresnel == FRESNEL_CONDUCTOR)
+	if (model->fresnel == FRESNEL_CONDUCTOR && !model->per_channel_ior)
 		used += snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", k %s", csv_number(number, model->k));
 	if (cook_torrance_has_second(model))
 		snprintf(text + used, (size_t)(EXPORT_TEXT - used), ", and a second lobe, sigma %s",

@@ -144,7 +144,7 @@ static void write_fresnel_sliders(struct glsl *glsl)
 {
 	const struct cook_torrance *model = glsl->model;
 	if (fresnel_has_ior(model->fresnel))
-		slider(glsl, "n", model->n, 1.0001, 3, 100);
+		slider(glsl, "n", model->n, fit_ior_min(model->fresnel), 3, 100);
 	if (model->fresnel == FRESNEL_CONDUCTOR)
 		slider(glsl, "k", model->k, 0, 10, 100);
 	for (int part = 0; part < F82_PARTS && model->fresnel == FRESNEL_F82; part++) {
@@ -832,6 +832,10 @@ static enum status brdf_prepare(struct export *export, struct error *error)
 	if (export_max(export->model.ks) > 0 && ndf_is_tilted(&export->model.ndf))
 		return error_set(error, STATUS_UNSUPPORTED,
 				 "the shader has no tilted facets (--format bsdf and json have every model)");
+	if (export_max(export->model.ks) > 0 && export->model.per_channel_ior)
+		return error_set(error, STATUS_UNSUPPORTED,
+				 "the shader has no index for each channel (--format bsdf, merl and json have every "
+				 "model)");
 	if (cook_torrance_has_second(&export->model) &&
 	    (ndf_is_tabulated(export->model.second.class) || ndf_has_tilt(export->model.second.class)))
 		return error_set(error, STATUS_UNSUPPORTED,

@@ -150,6 +150,18 @@ static void write_terms(FILE *file, const struct cook_torrance *model)
 	}
 }
 
+static void write_index(FILE *file, const struct cook_torrance *model)
+{
+	if (model->per_channel_ior) {
+		write_rgb(file, "ior", model->channel_n);
+		write_rgb(file, "k", model->channel_k);
+		return;
+	}
+	write_parameter(file, "  ", "ior", model->n);
+	write_parameter(file, ",\n  ", "k", model->k);
+	fputs(",\n", file);
+}
+
 static void write_fitted(FILE *file, const struct export_source *source)
 {
 	fputs("  \"fitted\": {\"path\": ", file);
@@ -177,12 +189,9 @@ static enum status json_write(const struct export *export, FILE *file, struct er
 	write_rgb(file, "kd", model->kd);
 	write_rgb(file, "ks", model->ks);
 	write_ndf(file, &model->ndf);
-	fprintf(file, "  \"gaf\": \"%s\",\n  \"fresnel\": \"%s\",\n  \"ior\": ", gaf_name(model->gaf),
+	fprintf(file, "  \"gaf\": \"%s\",\n  \"fresnel\": \"%s\",\n", gaf_name(model->gaf),
 		fresnel_name(model->fresnel));
-	write_number(file, model->n);
-	fputs(",\n  \"k\": ", file);
-	write_number(file, model->k);
-	fputs(",\n", file);
+	write_index(file, model);
 	write_terms(file, model);
 	write_fitted(file, &export->source);
 	fputs("}\n", file);

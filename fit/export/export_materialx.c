@@ -23,6 +23,7 @@ static const struct target target = {
 		   1u << FRESNEL_F82,
 	.instead = FRESNEL_DIELECTRIC,
 	.sigma_max = 1,
+	.channel_ior = true,
 };
 
 /* Cosine-weighted mean of F over the hemisphere. */
@@ -152,8 +153,10 @@ static void write_lobe(FILE *file, const struct cook_torrance *model, const char
 	char text[2][CSV_NUMBER_SIZE];
 	begin_node(file, element, "BSDF", material, conductor ? "_metal" : "_lobe");
 	if (conductor) {
-		write_color(file, "ior", white, model->n);
-		write_color(file, "extinction", white, model->k);
+		write_color(file, "ior", model->per_channel_ior ? model->channel_n : white,
+			    model->per_channel_ior ? 1 : model->n);
+		write_color(file, "extinction", model->per_channel_ior ? model->channel_k : white,
+			    model->per_channel_ior ? 1 : model->k);
 	} else if (model->fresnel == FRESNEL_DIELECTRIC) {
 		write_color(file, "tint", model->ks, 1);
 		write_number(file, "ior", model->n);

@@ -119,6 +119,38 @@ static enum status read_ndf(const json_t *json, struct model_json *read, struct 
 	return STATUS_OK;
 }
 
+static bool is_index(double n)
+{
+	return n > 0 && n <= 1e75;
+}
+
+static bool is_absorption(double k)
+{
+	return k >= 0 && k <= 1e75;
+}
+
+/* One index, or one for each channel. */
+static enum status read_index(const json_t *json, struct cook_torrance *model, struct error *error)
+{
+	const json_t *n = json_object_get(json, "ior"), *k = json_object_get(json, "k");
+	model->per_channel_ior = json_is_array(n) || json_is_array(k);
+	model->n = model->per_channel_ior ? 1.5 : number_of(n);
+	model->k = model->per_channel_ior ? 0 : number_of(k);
+	if (model->per_channel_ior && model->fresnel != FRESNEL_CONDUCTOR)
+		return bad("ior", "one number, but for a conductor", error);
+	if (model->per_channel_ior && (json_array_size(n) != 3 || json_array_size(k) != 3))
+		return bad("ior", "one number as \"k\" is, or three as \"k\" are", error);
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		model->channel_n[c] = number_of(json_array_get(n, (size_t)c));
+		model->channel_k[c] = number_of(json_array_get(k, (size_t)c));
+		if (!is_index(model->per_channel_ior ? model->channel_n[c] : model->n))
+			return bad("ior", "a positive number, or three of them", error);
+		if (!is_absorption(model->per_channel_ior ? model->channel_k[c] : model->k))
+			return bad("k", "a number, not negative, or three of them", error);
+	}
+	return STATUS_OK;
+}
+
 static enum status read_terms(const json_t *json, struct model_json *read, struct fit_options *fit, struct error *error)
 {
 	struct cook_torrance *model = &read->model;
@@ -126,16 +158,12 @@ static enum status read_terms(const json_t *json, struct model_json *read, struc
 		return bad("gaf", "the name of a masking-shadowing term", error);
 	if (fresnel_find(text_of(json, "fresnel"), &model->fresnel) != STATUS_OK)
 		return bad("fresnel", "the name of a Fresnel term", error);
-	model->n = number_of(json_object_get(json, "ior"));
-	model->k = number_of(json_object_get(json, "k"));
-	if (!(model->n > 0 && model->n <= 1e75))
-		return bad("ior", "a positive number", error);
-	if (!(model->k >= 0 && model->k <= 1e75))
-		return bad("k", "a number, not negative", error);
 	fit->criterion.gaf = model->gaf;
 	fit->fresnel = model->fresnel;
 	fit->lambda = model->ndf.lambda_form;
-	return STATUS_OK;
+	const enum status status = read_index(json, model, error);
+	fit->per_channel_ior = model->per_channel_ior;
+	return status;
 }
 
 static bool is_reflectance(const double rgb[3])

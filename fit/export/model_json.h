@@ -13,7 +13,7 @@
  *       "nodes": {"theta": [...], "D": [...]},   pl instead: D, 1/sr, linear in theta, radians, from 0 to pi/2
  *                                                anisotropic: "Dy" and "angle", degrees, too, and D is along the first axis
  *       "lambda": "exact",                       a name of lambda_form.h
- *       "gaf": "uncorrelated", "fresnel": "dielectric", "ior": n, "k": k,
+ *       "gaf": "uncorrelated", "fresnel": "dielectric", "ior": n, "k": k,     [r, g, b] where channels have their own
  *       "fitted": {"path": ..., "weight": ..., "bins": ..., "max_theta": ..., "error": E}     path and E may be null;
  *                 with "zero_is_missing": true where the fit left zeros out
  *     } */

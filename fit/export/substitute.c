@@ -59,6 +59,8 @@ bool substitute_needed(const struct target *target, const struct cook_torrance *
 		add_text(text, " no %s G,", gaf_name(model->gaf));
 	if (!(target->fresnel & 1u << model->fresnel))
 		add_text(text, " no Fresnel term %s,", fresnel_name(model->fresnel));
+	if (model->per_channel_ior && !target->channel_ior)
+		add_text(text, " no index of its own for each channel,");
 	const double sigma = fmax(model->ndf.sigma_x, model->ndf.sigma_y);
 	if (target->sigma_max > 0 && sigma / model->ndf.stretch > target->sigma_max)
 		add_text(text, " no roughness of %.5g,", sigma);
@@ -106,11 +108,12 @@ static struct fit_options options_for(const struct target *target, const struct 
 	fit.sigma = fit.sigma_y = fit.angle = fit.gamma = fit.ior = NAN;
 	fit.anisotropic = export_has_axes(model);
 	fit.diffuse = export_max(model->kd) > 0 || cook_torrance_has_grazing(model);
+	fit.gray = is_gray(model->kd) && is_gray(model->ks) && !cook_torrance_has_channel_F(model);
+	fit.per_channel_ior = model->per_channel_ior && target->channel_ior;
 	fit.grazing = false;
 	fit.lobes = 1;
 	fit.specular = true;
 	fit.unbounded = false;
-	fit.gray = is_gray(model->kd) && is_gray(model->ks);
 	fit.starts = 0;
 	fit.algorithm = NULL;
 	fit.trace = NULL;

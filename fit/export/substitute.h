@@ -16,6 +16,7 @@ struct target {
 	double sigma_max;     /* larger one cannot be said; 0: any can */
 	bool blend;           /* adds up two lobes by weights, so that kd + ks may not exceed 1 */
 	const char *itself;   /* the format of ours that shows every model there; NULL: none */
+	bool channel_ior;     /* takes a conductor's index for each channel */
 };
 
 /* substitute_needed - whether the target cannot express the lobe as it is; `why` (may be NULL) receives what is amiss. */

@@ -56,7 +56,7 @@ void surface_free(struct surface *s)
 /* About what a lobe sends back, all channels together. */
 static double reflected(const struct cook_torrance *model, const double ks[3], double cos_o)
 {
-	if (model->fresnel != FRESNEL_F82)
+	if (!cook_torrance_has_channel_F(model))
 		return mean_of(ks) * cook_torrance_F(model, 0, cos_o);
 	double sum = 0;
 	for (int c = 0; c < 3; c++)
@@ -130,7 +130,7 @@ static double add_lobe(const struct surface *s, const struct view *view, int l, 
 	const double *ks = l ? model->ks_second : model->ks;
 	const double D = ndf_D(lobe->ndf, half.m);
 	const bool given = s->measured || s->other;
-	if (!given && model->fresnel != FRESNEL_F82) {
+	if (!given && !cook_torrance_has_channel_F(model)) {
 		const double value = facets_f(s, view, l, wi, cook_torrance_F(model, 0, half.cos_d) * D);
 		for (int c = 0; c < 3; c++)
 			f[c] += ks[c] * value;

@@ -73,6 +73,12 @@ const struct csv_column result_columns[RESULT_COLUMNS] = {
 	[RESULT_KS2_B] = {"ks2_b", true},
 	[RESULT_SIGMA2] = {"sigma2", true},
 	[RESULT_GAMMA2] = {"gamma2", true},
+	[RESULT_IOR_R] = {"ior_r", true},
+	[RESULT_IOR_G] = {"ior_g", true},
+	[RESULT_IOR_B] = {"ior_b", true},
+	[RESULT_K_R] = {"k_r", true},
+	[RESULT_K_G] = {"k_g", true},
+	[RESULT_K_B] = {"k_b", true},
 	[RESULT_SUSPECTS] = {"suspects", false},
 	[RESULT_SIGMA_LO] = {"sigma_lo", true},
 	[RESULT_SIGMA_HI] = {"sigma_hi", true},
@@ -308,9 +314,13 @@ static void set_model(struct row *row, const struct fit_options *options, const 
 		add_param(params, "tilt_x", model->ndf.tilt_x);
 		add_param(params, "tilt_y", model->ndf.tilt_y);
 	}
-	if (fresnel_has_ior(model->fresnel))
+	if (model->per_channel_ior) {
+		set_channels(row, RESULT_IOR_R, model->channel_n);
+		set_channels(row, RESULT_K_R, model->channel_k);
+	} else if (fresnel_has_ior(model->fresnel)) {
 		set_number(row, RESULT_IOR, model->n);
-	if (model->fresnel == FRESNEL_CONDUCTOR)
+	}
+	if (model->fresnel == FRESNEL_CONDUCTOR && !model->per_channel_ior)
 		add_param(params, "k", model->k);
 	row->cell[RESULT_PARAMS] = params;
 	row->cell[RESULT_LAMBDA] = lambda_form_name(model->ndf.lambda_form);
@@ -351,13 +361,14 @@ static void set_energy_conservation(struct row *row, const struct cook_torrance 
 	row->cell[RESULT_ENERGY] = energy_conservation_name(&energy);
 }
 
-enum { NAMES_SIZE = 96, STATUS_SIZE = NAMES_SIZE + 16 };
+enum { NAMES_SIZE = 160, STATUS_SIZE = NAMES_SIZE + 16 };
 
 /* The names of enum fit_bound's bits. */
 static const char *names_text(char text[NAMES_SIZE], unsigned bits)
 {
-	static const char *const name[] = {"sigma", "gamma", "ior", "kd_r",  "kd_g",     "kd_b",   "ks_r",
-					   "ks_g",  "ks_b",  "k",   "angle", "exponent", "sigma2", "gamma2"};
+	static const char *const name[] = {"sigma", "gamma", "ior",   "kd_r",  "kd_g",     "kd_b",   "ks_r",
+					   "ks_g",  "ks_b",  "k",     "angle", "exponent", "sigma2", "gamma2",
+					   "ior_r", "ior_g", "ior_b", "k_r",   "k_g",      "k_b"};
 	char *at = text;
 	*at = '\0';
 	for (size_t b = 0; b < sizeof name / sizeof *name; b++) {
@@ -732,6 +743,28 @@ static enum result_column result_second(char *const *row, struct cook_torrance *
 											      : RESULT_GAMMA2;
 }
 
+/* The index of a row: one, or one for each channel. Returns RESULT_COLUMNS where it is whole, else the column to blame. */
+static enum result_column result_index(char *const *row, struct cook_torrance *model, struct fit_options *options)
+{
+	const bool conductor = options->fresnel == FRESNEL_CONDUCTOR && *row[RESULT_KS_R];
+	model->per_channel_ior = options->per_channel_ior = conductor && *row[RESULT_IOR_R];
+	for (enum result_column c = 0; c < 3 && model->per_channel_ior; c++) {
+		model->channel_n[c] = number_or(row, RESULT_IOR_R + c, 0);
+		model->channel_k[c] = number_or(row, RESULT_K_R + c, -1);
+		if (!(model->channel_n[c] > 0 && !isinf(model->channel_n[c])))
+			return RESULT_IOR_R + c;
+		if (!(model->channel_k[c] >= 0 && !isinf(model->channel_k[c])))
+			return RESULT_K_R + c;
+	}
+	if (model->per_channel_ior)
+		return RESULT_COLUMNS;
+	if (!(model->n > 0 && !isinf(model->n)) || (fresnel_has_ior(options->fresnel) && is_missing(row, RESULT_IOR)))
+		return RESULT_IOR;
+	if (conductor && !(result_param(row[RESULT_PARAMS], "k", &model->k) && model->k >= 0))
+		return RESULT_PARAMS;
+	return RESULT_COLUMNS;
+}
+
 enum status result_model(char *const *row, struct cook_torrance *model, struct fit_options *options, struct pwl **pwl,
 			 struct error *error)
 {
@@ -762,14 +795,12 @@ enum status result_model(char *const *row, struct cook_torrance *model, struct f
 		model->kd[c] = number_or(row, RESULT_KD_R + c, 0);
 		model->ks[c] = number_or(row, RESULT_KS_R + c, 0);
 	}
-	if (!(model->n > 0 && !isinf(model->n)) || (fresnel_has_ior(options->fresnel) && is_missing(row, RESULT_IOR)))
-		return bad_cell(row, RESULT_IOR, error);
-	if (options->fresnel == FRESNEL_CONDUCTOR && *row[RESULT_KS_R] &&
-	    !(result_param(row[RESULT_PARAMS], "k", &model->k) && model->k >= 0))
-		return bad_cell(row, RESULT_PARAMS, error);
+	enum result_column wrong = result_index(row, model, options);
+	if (wrong != RESULT_COLUMNS)
+		return bad_cell(row, wrong, error);
 	model->gaf = options->criterion.gaf;
 	model->fresnel = options->fresnel;
-	enum result_column wrong = result_terms(row, model, options);
+	wrong = result_terms(row, model, options);
 	if (wrong != RESULT_COLUMNS)
 		return bad_cell(row, wrong, error);
 	if (ndf_is_tabulated(ndf))

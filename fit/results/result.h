@@ -93,6 +93,13 @@ enum result_column {
 	RESULT_OPEN_ENDS,
 	RESULT_OTHER_INTERVALS,
 	RESULT_OTHER_BINS,
+	/* Of conductors with an index for each channel, else empty */
+	RESULT_IOR_R,
+	RESULT_IOR_G,
+	RESULT_IOR_B,
+	RESULT_K_R,
+	RESULT_K_G,
+	RESULT_K_B,
 	RESULT_COLUMNS,
 	RESULT_LATER = RESULT_SIGMA_X /* from here on columns that earlier tables lack: what is not there is empty */
 };

@@ -9,6 +9,7 @@
 #include "fit/search/undetermined.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct fit_context {
 	struct geometry geometry;
@@ -92,6 +93,31 @@ static bool on_bound(double value, double low, double high)
 	return value <= low * (1 + 1e-4) || value >= high * (1 - 1e-4);
 }
 
+static bool index_on_bound(const struct fit_options *o, double n)
+{
+	return o->fresnel == FRESNEL_CONDUCTOR ? on_bound(n, FIT_CONDUCTOR_IOR_MIN, FIT_IOR_MAX)
+					       : on_bound(n - 1, FIT_IOR_MIN - 1, FIT_IOR_MAX - 1);
+}
+
+static unsigned index_bounds(const struct cook_torrance *m, const struct fit_options *o)
+{
+	unsigned bits = 0;
+
+	for (int c = 0; c < MERL_CHANNELS && o->per_channel_ior; c++) {
+		if (index_on_bound(o, m->channel_n[c]))
+			bits |= (unsigned)BOUND_IOR_R << c;
+		if (on_bound(m->channel_k[c], 0, FIT_K_MAX))
+			bits |= (unsigned)BOUND_K_R << c;
+	}
+	if (o->per_channel_ior)
+		return bits;
+	if (fresnel_has_ior(o->fresnel) && isnan(o->ior) && index_on_bound(o, m->n))
+		bits |= BOUND_IOR;
+	if (o->fresnel == FRESNEL_CONDUCTOR && on_bound(m->k, 0, FIT_K_MAX))
+		bits |= BOUND_K;
+	return bits;
+}
+
 static unsigned bounds_of(const struct fit_result *r, const struct fit_options *o)
 {
 	const struct cook_torrance *m = &r->model;
@@ -110,11 +136,7 @@ static unsigned bounds_of(const struct fit_result *r, const struct fit_options *
 		if (gamma && isnan(o->gamma) &&
 		    on_bound(m->ndf.gamma - gamma->min, gamma->search_min - gamma->min, gamma->search_max - gamma->min))
 			bits |= BOUND_GAMMA;
-		if (fresnel_has_ior(o->fresnel) && isnan(o->ior) &&
-		    on_bound(m->n - 1, FIT_IOR_MIN - 1, FIT_IOR_MAX - 1))
-			bits |= BOUND_IOR;
-		if (o->fresnel == FRESNEL_CONDUCTOR && on_bound(m->k, 0, FIT_K_MAX))
-			bits |= BOUND_K;
+		bits |= index_bounds(m, o);
 	}
 	for (int c = 0; c < MERL_CHANNELS; c++) {
 		if (o->diffuse && (m->kd[c] <= 0 || m->kd[c] >= objective_upper_bound(o, false)))
@@ -139,6 +161,9 @@ static enum status result_with_ndf(const struct run *run, const struct found *fo
 	m->fresnel = o->fresnel;
 	m->n = found->shape.ior;
 	m->k = found->shape.k;
+	m->per_channel_ior = o->per_channel_ior && o->specular;
+	memcpy(m->channel_n, found->shape.channel_ior, sizeof m->channel_n);
+	memcpy(m->channel_k, found->shape.channel_k, sizeof m->channel_k);
 	linear_set_model(&found->linear, o, m);
 	status = metrics_compute(&run->context->geometry, run->measurement, m, o->threads, &r->metrics);
 	if (status != STATUS_OK)
@@ -586,6 +611,8 @@ static bool leave_out(struct fit_options *options)
 		options->grazing = false;
 	else if (options->fresnel == FRESNEL_F82 && options->specular)
 		options->fresnel = FRESNEL_SCHLICK;
+	else if (options->per_channel_ior && options->specular)
+		options->per_channel_ior = false;
 	else
 		return false;
 	return true;
@@ -607,6 +634,14 @@ static void take_simpler(const struct run *run, struct fit_result *r, const stru
 		m->reflectance[c][2] = m->ks[c];
 		m->ks[c] = 1;
 	}
+	if (run->options->per_channel_ior && !m->per_channel_ior) {
+		for (int c = 0; c < MERL_CHANNELS; c++) {
+			m->channel_n[c] = m->n;
+			m->channel_k[c] = m->k;
+		}
+		m->per_channel_ior = true;
+		selected.at_bound = bounds_of(&selected, run->options);
+	}
 	m->fresnel = run->options->fresnel;
 	keep_effort(&selected, r);
 	*r = selected;
@@ -624,6 +659,8 @@ static int richer_starts(const struct run *run, const struct ndf_class *class, c
 	int count = 1;
 
 	start[0] = shape_of(&simpler->model);
+	if (run->options->per_channel_ior)
+		shape_spread_index(&start[0]);
 	if (isnan(start[0].grazing) || start[0].grazing < FIT_GRAZING_MIN)
 		start[0].grazing = isnan(run->options->grazing_exponent) ? 5 : run->options->grazing_exponent;
 	if (run->options->lobes < 2)
@@ -648,6 +685,9 @@ static int richer_starts(const struct run *run, const struct ndf_class *class, c
 	return count + second_lobe_starts(&run->multiresolution, run->options, class, &one, start + count,
 					  SEARCH_GIVEN - count, evaluations, status);
 }
+
+static enum status fit_kind(const struct run *run, const struct ndf_class *class, struct nested *nested,
+			    struct fit_result *r);
 
 /* Two lobes beside a grazing term hold two lobes without one, too, which the simpler model is not. */
 static enum status fit_without_grazing(const struct run *run, const struct ndf_class *class, struct fit_result *r)
@@ -709,7 +749,7 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 	const double begin = search_clock();
 
 	if (status == STATUS_OK && scans)
-		status = fit_alone(run, class, r);
+		status = run->options->per_channel_ior ? fit_kind(run, class, nested, r) : fit_alone(run, class, r);
 	if (status == STATUS_OK)
 		count = richer_starts(run, class, &simpler, nested, start, &evaluations, &status);
 	if (status == STATUS_OK && two_ways)
@@ -761,14 +801,12 @@ static enum status fit_level(const struct run *run, const struct ndf_class *clas
 	return ndf_init(&r->model.ndf, class, ndf.sigma_x, ndf.sigma_y, ndf.gamma);
 }
 
-static enum status fit_anew(const struct run *run, const struct ndf_class *class, struct nested *nested,
+/* Among the models of one kind, as the options have it. */
+static enum status fit_kind(const struct run *run, const struct ndf_class *class, struct nested *nested,
 			    struct fit_result *r)
 {
 	const struct nesting nesting = nesting_of(run, class);
-	struct fit_options simpler = *run->options;
 
-	if (leave_out(&simpler))
-		return fit_richer(run, class, &simpler, nested, r);
 	if (ndf_is_tabulated(class))
 		return fit_free_form(run, nested, r);
 	if (run->options->anisotropic && isnan(run->options->sigma_y))
@@ -787,6 +825,14 @@ static enum status fit_anew(const struct run *run, const struct ndf_class *class
 			return status;
 		}
 	return fit_alone(run, class, r);
+}
+
+static enum status fit_anew(const struct run *run, const struct ndf_class *class, struct nested *nested,
+			    struct fit_result *r)
+{
+	struct fit_options simpler = *run->options;
+
+	return leave_out(&simpler) ? fit_richer(run, class, &simpler, nested, r) : fit_kind(run, class, nested, r);
 }
 
 static enum status fit_class(const struct run *run, const struct ndf_class *class, struct nested *nested,

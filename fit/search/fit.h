@@ -27,6 +27,13 @@ enum fit_bound {
 	BOUND_GRAZING = 1 << 11,
 	BOUND_SECOND_SIGMA = 1 << 12,
 	BOUND_SECOND_GAMMA = 1 << 13,
+	/* Of options->per_channel_ior, in place of BOUND_IOR and BOUND_K */
+	BOUND_IOR_R = 1 << 14,
+	BOUND_IOR_G = 1 << 15,
+	BOUND_IOR_B = 1 << 16,
+	BOUND_K_R = 1 << 17,
+	BOUND_K_G = 1 << 18,
+	BOUND_K_B = 1 << 19,
 };
 
 /* A parameter is undetermined when, at every value of its domain, with the other parameters refitted, E is at most

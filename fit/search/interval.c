@@ -31,7 +31,7 @@ struct profile_context {
 	const struct multiresolution *multiresolution;
 	const struct fit_options *options;
 	const struct ndf_class *class;
-	struct space space;
+	struct space space, searched; /* of a conductor in n and k, and as it was searched */
 	struct shape best;
 	double allowed;                       /* increase of E, relative */
 	double full;                          /* E of *best on the full table */
@@ -372,7 +372,7 @@ static enum status add_from_scan(struct profile *p, struct interval_list *list)
 
 	for (int i = 0; i < axis->count && status == STATUS_OK; i++) {
 		const struct space_point *slice = &c->scan.slice[p->d][i];
-		const struct shape shape = space_shape(&c->space, slice->x);
+		const struct shape shape = space_shape(&c->searched, slice->x);
 		struct interval interval;
 
 		if (slice->error > enough || covers(list, axis->value[i]))
@@ -437,7 +437,8 @@ static enum status find_intervals(struct profile_context *c, int d, struct inter
 		if (status == STATUS_OK && !isnan(interval.lo))
 			add_interval(list, &interval);
 	}
-	if (status == STATUS_OK && others)
+	/* The scan has seen no values of a conductor's n or k. */
+	if (status == STATUS_OK && others && c->space.coordinate[d] == c->searched.coordinate[d])
 		status = add_from_scan(&p, list);
 	objective_free(&p.full);
 	objective_free(&p.sample);
@@ -493,7 +494,7 @@ static enum status find_minima(struct profile_context *c)
 	c->minimum[c->n_minima++] = c->best;
 	for (int i = 0; i < n; i++) {
 		c->least = fmin(c->least, point[i].error);
-		c->minimum[c->n_minima++] = space_shape(&c->space, point[i].x);
+		c->minimum[c->n_minima++] = space_shape(&c->searched, point[i].x);
 	}
 	return STATUS_OK;
 }
@@ -512,7 +513,9 @@ enum status interval_find(const struct multiresolution *multiresolution, const s
 	memset(list, 0, INTERVAL_PARAMETERS * sizeof *list);
 	if (ndf_is_tabulated(class))
 		return STATUS_OK;
-	space_init(&c.space, options, class);
+	space_init(&c.searched, options, class);
+	c.space = c.searched;
+	space_plain_index(&c.space);
 	if (c.space.dims == 0)
 		return STATUS_OK;
 	enum status status = find_minima(&c);

@@ -6,6 +6,8 @@
 /* The free parameters of F: an index, that of a conductor with its k. */
 static int parameters_of_F(const struct fit_options *o)
 {
+	if (o->per_channel_ior)
+		return 2 * MERL_CHANNELS;
 	return (fresnel_has_ior(o->fresnel) && isnan(o->ior)) + (o->fresnel == FRESNEL_CONDUCTOR);
 }
 

@@ -10,6 +10,9 @@
  * further off. */
 #define INNER 0.03
 
+/* An index of each channel asks for so many times the evaluations: up to eight parameters, not two to four. */
+enum { PER_CHANNEL = 4 };
+
 struct local {
 	const struct space *space;
 	struct objective *objective;
@@ -63,11 +66,11 @@ static double evaluate(unsigned dims, const double *x, double *gradient, void *d
 double local_spacing(enum coordinate coordinate)
 {
 	static const double spacing[] = {
-		[COORDINATE_SIGMA] = 0.35,      [COORDINATE_GAMMA] = 1.0,        [COORDINATE_IOR] = 0.1,
-		[COORDINATE_K] = 0.15,          [COORDINATE_STRETCH_COS] = 0.35, [COORDINATE_STRETCH_SIN] = 0.35,
-		[COORDINATE_STRETCH] = 0.35,    [COORDINATE_ANGLE] = 15,         [COORDINATE_TILT_X] = 0.35,
-		[COORDINATE_TILT_Y] = 0.35,     [COORDINATE_GRAZING] = 0.4,      [COORDINATE_SECOND_SIGMA] = 0.35,
-		[COORDINATE_SECOND_GAMMA] = 1.0};
+		[COORDINATE_SIGMA] = 0.35,       [COORDINATE_GAMMA] = 1.0,         [COORDINATE_IOR] = 0.1,
+		[COORDINATE_K] = 0.15,           [COORDINATE_LENGTH] = 0.1,        [COORDINATE_PHASE] = 0.35,
+		[COORDINATE_STRETCH_COS] = 0.35, [COORDINATE_STRETCH_SIN] = 0.35,  [COORDINATE_STRETCH] = 0.35,
+		[COORDINATE_ANGLE] = 15,         [COORDINATE_TILT_X] = 0.35,       [COORDINATE_TILT_Y] = 0.35,
+		[COORDINATE_GRAZING] = 0.4,      [COORDINATE_SECOND_SIGMA] = 0.35, [COORDINATE_SECOND_GAMMA] = 1.0};
 
 	return spacing[coordinate];
 }
@@ -98,7 +101,7 @@ enum status local_descend(const struct space *space, struct objective *o, const 
 	nlopt_set_upper_bounds(opt, space->hi);
 	nlopt_set_ftol_rel(opt, settings->patient ? 0 : settings->tolerance);
 	nlopt_set_xtol_rel(opt, 1e-5);
-	nlopt_set_maxeval(opt, settings->evaluations);
+	nlopt_set_maxeval(opt, (space->per_channel ? PER_CHANNEL : 1) * settings->evaluations);
 	if (settings->enough > 0)
 		nlopt_set_stopval(opt, settings->enough);
 	/* nlopt keeps the steps in memory that it asks for now; without them it would take others. */

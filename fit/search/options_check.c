@@ -59,9 +59,9 @@ static enum status check_ranges(const struct fit_options *o, struct error *error
 				 FIT_SIGMA_MAX, o->sigma_y);
 	if (isinf(o->angle))
 		return error_set(error, STATUS_DOMAIN, "expected a finite angle, found %g", o->angle);
-	if (!free_or_within(o->ior, FIT_IOR_MIN, FIT_IOR_MAX))
-		return error_set(error, STATUS_DOMAIN, "expected ior in [%g, %g], found %g", FIT_IOR_MIN, FIT_IOR_MAX,
-				 o->ior);
+	if (!free_or_within(o->ior, fit_ior_min(o->fresnel), FIT_IOR_MAX))
+		return error_set(error, STATUS_DOMAIN, "expected ior in [%g, %g], found %g", fit_ior_min(o->fresnel),
+				 FIT_IOR_MAX, o->ior);
 	if (o->gamma <= 0)
 		return error_set(error, STATUS_DOMAIN, "expected gamma above 0, found %g", o->gamma);
 	if (!free_or_within(o->grazing_exponent, FIT_GRAZING_MIN, FIT_GRAZING_MAX))
@@ -145,6 +145,31 @@ static bool keeps_richer_rule(const struct fit_options *o, struct error *error)
 	return !fault;
 }
 
+/* Whether each channel can have an index of its own. */
+static bool keeps_index_rule(const struct fit_options *o, struct error *error)
+{
+	const char *fault = NULL;
+
+	if (!o->per_channel_ior)
+		return true;
+	if (o->fresnel != FRESNEL_CONDUCTOR || !o->specular)
+		fault = "an index for each channel needs a specular term with F conductor";
+	else if (!isnan(o->ior))
+		fault = "an index for each channel goes without a fixed one";
+	else if (o->gray)
+		fault = "an index for each channel goes without gray";
+	else if (o->grazing || o->lobes > 1 || o->anisotropic)
+		fault = "an index for each channel goes with one isotropic lobe beside Lambert's term";
+	else if (o->algorithm)
+		fault = "an index for each channel needs the default algorithm";
+	for (int n = 0; n < o->n_ndf && !fault; n++)
+		if (ndf_is_tabulated(o->ndf[n]))
+			fault = "pl has one index for all channels";
+	if (fault)
+		error_set(error, STATUS_DOMAIN, "%s", fault);
+	return !fault;
+}
+
 enum fit_rule fit_options_rule(const struct fit_options *o, struct error *error)
 {
 	if (check_ranges(o, error) != STATUS_OK)
@@ -159,6 +184,8 @@ enum fit_rule fit_options_rule(const struct fit_options *o, struct error *error)
 	}
 	if (!keeps_anisotropic_rule(o, error))
 		return FIT_RULE_ANISOTROPIC;
+	if (!keeps_index_rule(o, error))
+		return FIT_RULE_RICHER;
 	if (!keeps_richer_rule(o, error))
 		return FIT_RULE_RICHER;
 	for (int n = 0; n < o->n_ndf; n++) {

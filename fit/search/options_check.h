@@ -18,8 +18,8 @@ enum fit_rule {
 	FIT_RULE_TABULATED, /* pl without a specular term, or by another algorithm than the default */
 	FIT_RULE_ANISOTROPIC, /* an NDF of the list is isotropic, or one roughness is fixed, or another algorithm; or sigma_y or angle
 				without `anisotropic` */
-	FIT_RULE_RICHER, /* f82, two lobes or a grazing term beside what they do not go with */
-	FIT_RULE_GAMMA,  /* a fixed gamma that some NDF of the list does not take in the form of Lambda asked for */
+	FIT_RULE_RICHER, /* f82, two lobes, a grazing term or an index for each channel beside what they do not go with */
+	FIT_RULE_GAMMA, /* a fixed gamma that some NDF of the list does not take in the form of Lambda asked for */
 };
 
 /* fit_options_rule - the first rule that is broken, with a text that says what was expected and what was found.

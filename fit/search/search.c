@@ -470,7 +470,7 @@ static int add_between(const struct search *s, const struct scan_minima *minima,
 	const double enough = BETWEEN * (count > 0 ? point[0].error : 0);
 
 	for (int d = 0; d < s->space.dims; d++)
-		for (int i = 0; s->space.coordinate[d] == COORDINATE_IOR && i + 1 < s->space.axis[d].count; i++) {
+		for (int i = 0; space_is_of_ior(&s->space, d) && i + 1 < s->space.axis[d].count; i++) {
 			const struct space_point *low = &minima->slice[d][i], *high = low + 1;
 			const struct space_point *better = low->error < high->error ? low : high;
 
@@ -482,10 +482,82 @@ static int add_between(const struct search *s, const struct scan_minima *minima,
 	return count;
 }
 
+/* How many dimensions come before those of n and k. */
+static int dims_before_index(const struct space *space)
+{
+	int d = 0;
+
+	while (d < space->dims && space->coordinate[d] != COORDINATE_LENGTH)
+		d++;
+	return d;
+}
+
+/* Of points that differ in n and k alone, those that all channels share, the best for each channel: with the rest of the shape
+ * given, E is a sum of what each channel has. Where channels share ks, the best for all. */
+static void join_channels(const struct search *s, const struct space_point point[], long count, int first,
+			  struct space_point *joint)
+{
+	*joint = point[0];
+	joint->error = 0;
+	for (int c = 0; c < MERL_CHANNELS; c++) {
+		const int problem = s->options->gray_specular ? 0 : c;
+		const struct space_point *best = point;
+
+		for (long n = 1; n < count; n++)
+			if (point[n].linear.channel[problem] < best->linear.channel[problem])
+				best = &point[n];
+		memcpy(&joint->x[first + 2 * c], &best->x[first], 2 * sizeof best->x[0]);
+		joint->linear.kd[c] = best->linear.kd[c];
+		joint->linear.channel[c] = best->linear.channel[c];
+		memcpy(joint->linear.coefficient[c], best->linear.coefficient[c], sizeof best->linear.coefficient[c]);
+		memcpy(joint->linear.h[c], best->linear.h[c], sizeof best->linear.h[c]);
+		joint->error += problem == c ? best->linear.channel[c] : 0;
+	}
+	joint->linear.error = joint->error;
+	joint->linear.shape = space_shape(&s->space, joint->x);
+}
+
+/* The same where each channel has an n and k: the scan is of those that all share, and each channel takes its own from it. */
+static int first_points_per_channel(struct search *s, struct space_point point[], struct scan_minima *minima,
+				    enum status *status)
+{
+	struct fit_options options = *s->options;
+	struct search shared = *s, outer = *s;
+
+	options.per_channel_ior = false;
+	shared.options = &options;
+	space_init(&shared.space, &options, s->class);
+	outer.space.dims = dims_before_index(&s->space);
+	const long total = grid_size(&shared, 0), each = grid_size(&shared, outer.space.dims);
+	struct space_point *grid = calloc((size_t)total, sizeof *grid);
+
+	begin_stage(&shared, "scan");
+	*status = grid ? scan(&shared, grid) : STATUS_NO_MEMORY;
+	int count = 0;
+
+	if (*status == STATUS_OK) {
+		for (long n = 0; n < total; n += each) {
+			struct space_point joint;
+
+			join_channels(s, &grid[n], each, outer.space.dims, &joint);
+			grid[n / each] = joint;
+		}
+		note_slices(&outer, grid, minima);
+		count = pick_starts(&outer, grid, point);
+		if (count < 0)
+			*status = STATUS_NO_MEMORY;
+	}
+	s->evaluations = shared.evaluations;
+	free(grid);
+	return *status == STATUS_OK ? count : 0;
+}
+
 /* The points to start from: the local minima of a scan, and some between its points. Returns how many, at most
  * FIRST_POINTS_MAX; 0 on failure. */
 static int first_points(struct search *s, struct space_point point[], struct scan_minima *minima, enum status *status)
 {
+	if (s->space.per_channel)
+		return first_points_per_channel(s, point, minima, status);
 	struct space_point *grid = calloc((size_t)grid_size(s, 0), sizeof *grid);
 	int count = 0;
 

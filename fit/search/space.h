@@ -16,6 +16,10 @@ enum coordinate {
 	COORDINATE_GRAZING,      /* ln of the grazing term's exponent */
 	COORDINATE_SECOND_SIGMA, /* as sigma and gamma, */
 	COORDINATE_SECOND_GAMMA, /* of the second lobe */
+	/* Of a conductor's m = n + i k the amplitude (m - 1)/(m + 1) of its reflection at the normal. F0 is the square of the
+	 * length; where it is the same, the angle decides how F changes towards grazing incidence. */
+	COORDINATE_LENGTH, /* as it is: of k = 0 that is COORDINATE_IOR */
+	COORDINATE_PHASE,  /* the angle, 0 .. pi; at 0 and pi k is 0, n above 1 and below */
 	/* Of the axes: with l = ln(sigma_x/sigma_y) and the angle a */
 	COORDINATE_STRETCH_COS, /* l cos 2a, */
 	COORDINATE_STRETCH_SIN, /* l sin 2a: isotropy is a point like others, and no angle the end of a range */
@@ -43,6 +47,11 @@ struct space {
 	struct axis axis[SPACE_DIMS];
 	struct shape fixed; /* values of the parameters that are not searched */
 	double stretch[2];  /* the same of the first two coordinates of the axes */
+	/* Of n and k: whether each channel has its own (else all of it is of channel 0), whose they are in each dimension, and
+	 * COORDINATE_LENGTH and COORDINATE_PHASE where these are fixed. has_amplitude: n and k follow from them. */
+	bool per_channel, has_amplitude[MERL_CHANNELS];
+	int channel[SPACE_DIMS];
+	double amplitude[MERL_CHANNELS][2];
 };
 
 /* struct space_point - a point of a space, and E there on the table at hand. */
@@ -64,9 +73,18 @@ double space_sigma_scale(const struct space *space, double gamma);
 /* space_x - dimension d's coordinate of a value of its parameter; space_value - the reverse. */
 double space_x(const struct space *space, int d, double value);
 double space_value(const struct space *space, int d, double x);
+/* space_is_of_ior - whether dimension d, a conductor's COORDINATE_LENGTH included, says how high F is. */
+bool space_is_of_ior(const struct space *space, int d);
 /* space_is_of_axes - whether dimension d is one of the axes' coordinates but COORDINATE_ANGLE, or of the tilt. */
 bool space_is_of_axes(const struct space *space, int d);
 /* space_fix - takes dimension d out: its parameter has this value from now on, gamma = inf included. */
 void space_fix(struct space *space, int d, double value);
+/* space_fix_index - puts the other of n and k in the place of COORDINATE_LENGTH and COORDINATE_PHASE of a channel: n, or k, has this
+ * value from now on. */
+void space_fix_index(struct space *space, int channel, bool fix_k, double value);
+/* space_plain_index - puts n and k that all channels share in the place of COORDINATE_LENGTH and COORDINATE_PHASE. */
+void space_plain_index(struct space *space);
+/* space_index - n (0) or k (1) of a channel within a shape of this space. */
+double *space_index(const struct space *space, struct shape *shape, int channel, int which);
 
 #endif

@@ -4,12 +4,28 @@
 #include <math.h>
 #include <string.h>
 
-/* One parameter held at one value: dimension `dim` of the space, or, where that is negative, kd or ks of a channel. */
+/* One parameter held at one value. */
 struct fixed {
+	enum {
+		FIXED_DIMENSION, /* dimension `dim` of the space */
+		FIXED_DIFFUSE,   /* kd of a channel */
+		FIXED_SPECULAR,  /* its ks */
+		FIXED_N,         /* its n where k is searched too, or that of all channels, */
+		FIXED_K          /* and k where n is */
+	} what;
 	int dim, channel;
-	bool specular;
 	double value;
 };
+
+static bool is_of_index(const struct fixed *fixed)
+{
+	return fixed->what == FIXED_N || fixed->what == FIXED_K;
+}
+
+static bool is_factor(const struct fixed *fixed)
+{
+	return fixed->what == FIXED_DIFFUSE || fixed->what == FIXED_SPECULAR;
+}
 
 struct refit_context {
 	const struct multiresolution *multiresolution;
@@ -54,20 +70,38 @@ static enum status open_level(const struct refit_context *q, int level, struct o
 			      level == SEARCH_LEVELS - 1 ? MASKING_FINE : MASKING_COARSE);
 }
 
+/* The n and k of the other channels stay: they say nothing of this one. */
+static void fix_other_channels(const struct refit_context *q, struct space *space, int channel)
+{
+	double x[SPACE_DIMS];
+
+	space_from_shape(&q->space, &q->best, x);
+	for (int d = q->space.dims - 1; d >= 0; d--) {
+		const enum coordinate c = q->space.coordinate[d];
+
+		if ((c == COORDINATE_LENGTH || c == COORDINATE_PHASE) && q->space.channel[d] != channel)
+			space_fix(space, d, space_value(&q->space, d, x[d]));
+	}
+}
+
 /* The space that a fixed parameter leaves; what it holds there, the objective has to be told. */
 static struct space fixed_space(const struct refit_context *q, const struct fixed *fixed)
 {
 	struct space space = q->space;
 
-	if (fixed->dim >= 0)
+	if (fixed->what == FIXED_DIMENSION)
 		space_fix(&space, fixed->dim, fixed->value);
+	if (is_of_index(fixed)) {
+		fix_other_channels(q, &space, fixed->channel);
+		space_fix_index(&space, fixed->channel, fixed->what == FIXED_K, fixed->value);
+	}
 	return space;
 }
 
 static void fix_objective(struct objective *o, const struct fixed *fixed)
 {
-	if (fixed->dim < 0)
-		objective_fix(o, fixed->channel, fixed->specular, fixed->value);
+	if (is_factor(fixed))
+		objective_fix(o, fixed->channel, fixed->what == FIXED_SPECULAR, fixed->value);
 }
 
 static void count(void *user, const struct shape *shape, const struct linear *linear)
@@ -119,16 +153,54 @@ static int nearest(const struct axis *axis, double value)
 
 enum { STARTS = 2 };
 
+/* Offers the optimum with n, or k, as it is fixed and the other at `other`. */
+static void offer_index(struct refit_context *q, struct objective *o, const struct space *space,
+			const struct fixed *fixed, double other, struct space_point start[STARTS], int *n)
+{
+	struct shape shape = q->best;
+
+	*space_index(space, &shape, fixed->channel, fixed->what == FIXED_N) = other;
+	offer(q, o, space, shape, start, n, STARTS);
+}
+
+/* Where n and k nearly trade off, it is along equal F0 = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2). Where they do not, the other one may
+ * be anywhere. */
+static int first_points_of_index(struct refit_context *q, struct objective *o, const struct space *space,
+				 const struct fixed *fixed, struct space_point start[STARTS])
+{
+	static const double other[] = {0.03, 0.3, 1, 3, 10, 40};
+	const double n_best = *space_index(space, &q->best, fixed->channel, 0),
+		     k_best = *space_index(space, &q->best, fixed->channel, 1), at = fixed->value;
+	const double F0 = fresnel_conductor(1, n_best, k_best), up = 1 + F0, down = 1 - F0;
+	int n = 0;
+
+	offer_index(q, o, space, fixed, fixed->what == FIXED_N ? k_best : n_best, start, &n);
+	if (fixed->what == FIXED_N) {
+		offer_index(q, o, space, fixed, sqrt(fmax(F0 * (at + 1) * (at + 1) - (at - 1) * (at - 1), 0) / down),
+			    start, &n);
+	} else {
+		const double root = sqrt(fmax(up * up - down * down * (1 + at * at), 0));
+
+		offer_index(q, o, space, fixed, (up + root) / down, start, &n);
+		offer_index(q, o, space, fixed, (up - root) / down, start, &n);
+	}
+	for (size_t i = 0; i < sizeof other / sizeof *other; i++)
+		offer_index(q, o, space, fixed, other[i], start, &n);
+	return n;
+}
+
 /* Where a refit under a fixed parameter begins: at the optimum, and at the best that the scan has seen there. Under a fixed kd or
- * ks, at the best of each sigma; and, since ks may be large where F is small, at the least index. */
+ * ks, at the best of each sigma; and, since ks may be large where F is small, at the least F. */
 static int first_points(struct refit_context *q, struct objective *o, const struct space *space,
 			const struct fixed *fixed, struct space_point start[STARTS])
 {
 	const struct scan_minima *e = q->minima;
 	int n = 0;
 
+	if (is_of_index(fixed))
+		return first_points_of_index(q, o, space, fixed, start);
 	offer(q, o, space, q->best, start, &n, STARTS);
-	if (fixed->dim >= 0) {
+	if (fixed->what == FIXED_DIMENSION) {
 		const int i = nearest(&q->space.axis[fixed->dim], fixed->value);
 
 		offer(q, o, space, space_shape(&q->space, e->slice[fixed->dim][i].x), start, &n, STARTS);
@@ -136,10 +208,13 @@ static int first_points(struct refit_context *q, struct objective *o, const stru
 	}
 	for (int i = 0; q->space.dims > 0 && i < q->space.axis[0].count; i++)
 		offer(q, o, space, space_shape(&q->space, e->slice[0][i].x), start, &n, STARTS);
-	if (fixed->specular) {
+	if (fixed->what == FIXED_SPECULAR) {
 		struct shape faint = q->best;
 
-		faint.ior = FIT_IOR_MIN;
+		for (int c = 0; c < MERL_CHANNELS; c++) {
+			*space_index(space, &faint, c, 0) = FIT_IOR_MIN;
+			*space_index(space, &faint, c, 1) = 0;
+		}
 		offer(q, o, space, faint, start, &n, STARTS);
 	}
 	return n;
@@ -256,7 +331,43 @@ static enum status shape_parameter(struct refit_context *q, int d, bool *undeter
 	double value[SPACE_VALUES + 2];
 	const int n = values_of(q, d, value);
 
-	return reaches_all(q, (struct fixed){.dim = d}, value, n, undetermined);
+	return reaches_all(q, (struct fixed){.what = FIXED_DIMENSION, .dim = d}, value, n, undetermined);
+}
+
+/* Whether E is in reach at any of two values in the domain of a parameter. */
+static enum status reaches_any(struct refit_context *q, struct fixed fixed, const double value[2], double lowest,
+			       double highest, bool *reached)
+{
+	enum status status = STATUS_OK;
+
+	*reached = false;
+	for (int i = 0; i < 2 && !*reached && status == STATUS_OK; i++) {
+		fixed.value = value[i];
+		if (value[i] >= lowest && value[i] <= highest)
+			status = reaches(q, &fixed, reached);
+		if (fit_cancelled(q->options))
+			status = STATUS_INTERRUPTED;
+	}
+	return status;
+}
+
+/* Of a conductor: n and k nearly trade off over a part of their domain. Neither is determined where not even its size is. d: of
+ * k where n is fixed, of the length or the phase where both are free, and there of n, or of k. */
+static enum status index_parameter(struct refit_context *q, int d, bool *undetermined)
+{
+	const int channel = q->space.channel[d];
+	const double n = *space_index(&q->space, &q->best, channel, 0),
+		     k = *space_index(&q->space, &q->best, channel, 1), half = 0.5 * fmax(n, k);
+	const double of_n[2] = {n / 2, 2 * n}, of_k[2] = {k - half, k + half};
+	struct fixed fixed = {.what = FIXED_DIMENSION, .dim = d, .channel = channel};
+
+	if (q->space.coordinate[d] == COORDINATE_LENGTH) {
+		fixed.what = FIXED_N;
+		return reaches_any(q, fixed, of_n, FIT_CONDUCTOR_IOR_MIN, FIT_IOR_MAX, undetermined);
+	}
+	if (q->space.coordinate[d] == COORDINATE_PHASE)
+		fixed.what = FIXED_K;
+	return reaches_any(q, fixed, of_k, 0, FIT_K_MAX, undetermined);
 }
 
 /* Whether E is in reach at both ends of a factor with the shape as it is. It is convex in kd and ks: then it is in reach
@@ -300,22 +411,28 @@ static enum status factor(struct refit_context *q, int channel, bool specular, b
 		return status;
 	for (int n = 0; n < SHARES; n++)
 		value[n] = maximum * share[specular][n];
-	return reaches_all(q, (struct fixed){.dim = -1, .channel = channel, .specular = specular}, value, SHARES,
-			   undetermined);
+	return reaches_all(q, (struct fixed){.what = specular ? FIXED_SPECULAR : FIXED_DIFFUSE, .channel = channel},
+			   value, SHARES, undetermined);
 }
 
-static unsigned bit_of(enum coordinate c)
+static unsigned bit_of(const struct space *space, int d)
 {
 	static const unsigned bit[] = {[COORDINATE_SIGMA] = BOUND_SIGMA,
 				       [COORDINATE_GAMMA] = BOUND_GAMMA,
 				       [COORDINATE_IOR] = BOUND_IOR,
 				       [COORDINATE_K] = BOUND_K,
+				       [COORDINATE_LENGTH] = BOUND_IOR, /* in whose place n is asked for, and k */
+				       [COORDINATE_PHASE] = BOUND_K,
 				       [COORDINATE_ANGLE] = BOUND_ANGLE,
 				       [COORDINATE_GRAZING] = BOUND_GRAZING,
 				       [COORDINATE_SECOND_SIGMA] = BOUND_SECOND_SIGMA,
 				       [COORDINATE_SECOND_GAMMA] = BOUND_SECOND_GAMMA};
 
-	return bit[c];
+	if (space->per_channel && space->coordinate[d] == COORDINATE_LENGTH)
+		return (unsigned)BOUND_IOR_R << space->channel[d];
+	if (space->per_channel && space->coordinate[d] == COORDINATE_PHASE)
+		return (unsigned)BOUND_K_R << space->channel[d];
+	return bit[space->coordinate[d]];
 }
 
 static unsigned bits_of_factor(const struct fit_options *options, int channel, bool specular)
@@ -410,9 +527,14 @@ static enum status ask(struct refit_context *q, int n, unsigned determined, bool
 	if (n < q->space.dims && space_is_of_axes(&q->space, n))
 		return STATUS_OK; /* the isotropic fit tells: fit.c */
 	if (n < q->space.dims) {
-		if (!any_shape && !(bit_of(q->space.coordinate[n]) & determined))
+		const enum coordinate c = q->space.coordinate[n];
+		const bool of_conductor = c == COORDINATE_LENGTH || c == COORDINATE_PHASE || c == COORDINATE_K;
+
+		if (!any_shape && of_conductor)
+			status = index_parameter(q, n, &undetermined);
+		else if (!any_shape && !(bit_of(&q->space, n) & determined))
 			status = shape_parameter(q, n, &undetermined);
-		*bits = undetermined ? bit_of(q->space.coordinate[n]) : 0;
+		*bits = undetermined ? bit_of(&q->space, n) : 0;
 		return status;
 	}
 	const int channel = (n - q->space.dims) / 2;

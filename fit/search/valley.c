@@ -67,6 +67,12 @@ enum status valley_follow(const struct space *space, struct objective *o, local_
 			status = follow(&walk, space->least_gamma, point);
 		else if (space->coordinate[d] == COORDINATE_IOR)
 			status = follow(&walk, 1, point);
+		else if (space->per_channel)
+			continue; /* with n and k of three channels that takes too long */
+		else if (space->coordinate[d] == COORDINATE_LENGTH) /* steps in ln(1 - length) */
+			status = follow(&walk, 1, point);
+		else if (space->coordinate[d] == COORDINATE_PHASE)
+			status = follow(&walk, 0, point);
 	}
 	return status;
 }

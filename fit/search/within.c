@@ -146,6 +146,8 @@ static struct fit_options variant_options(const struct fit_options *options, str
 		o.fresnel = FRESNEL_NONE;
 	o.grazing = v.parts & PART_GRAZING;
 	o.lobes = v.parts & PART_SECOND ? 2 : 1;
+	/* Where ks has no colour, n and k have none. */
+	o.per_channel_ior &= o.fresnel == FRESNEL_CONDUCTOR && (v.parts & PART_COLOUR_SPECULAR);
 	return o;
 }
 

@@ -26,8 +26,8 @@ static const char *first_given(const struct options *options, const char *const 
 }
 
 /* Options that control a fit and do not describe a model. */
-static const char *const of_a_fit[] = {"unbounded",   "no-diffuse", "no-specular", "gray",
-				       "anisotropic", "diffuse",    "lobes",       NULL};
+static const char *const of_a_fit[] = {"unbounded", "no-diffuse", "no-specular",     "gray", "anisotropic",
+				       "diffuse",   "lobes",      "per-channel-ior", NULL};
 /* Options that a fit has no use for: what they say is what it finds. */
 static const char *const of_a_given_model[] = {"k",      "f0",     "f82",    "f90",   "kg", "ks2",
 					       "sigma2", "gamma2", "params", "nodes", NULL};
