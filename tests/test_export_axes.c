@@ -247,7 +247,8 @@ static void gltf_turns_the_tangent(void **state)
 	(void)state;
 	expect_gltf("0.3,0.1", 0.3, 0.1, 20);
 	/* Its sphere has the axes: without them it would look twice as different. */
-	check_between(number_behind(last.out, "delta E of the model 0.00, of what stands here "), 0.05, 0.75, "delta E");
+	check_between(number_behind(last.out, "delta E of the model 0.00, of what stands here "), 0.05, 0.75,
+		      "delta E");
 	expect_gltf("0.1,0.3", 0.1, 0.3, 20);
 	expect_gltf("0.2,0.9", 0.2, 0.9, -70);
 	json_t *json = json_loads(last.out, 0, NULL);
