@@ -5,6 +5,12 @@
 VERSION := 0.2.0
 
 CC ?= cc
+# Who builds by hand is told first what is missing; the targets that check or show something install it.
+ifeq ($(filter-out all library install,$(or $(MAKECMDGOALS),all)),)
+ifeq ($(shell command -v $(firstword $(CC)) 2>/dev/null),)
+$(error no C compiler '$(firstword $(CC))' here: `make setup` installs what is missing on Debian, README.md names it)
+endif
+endif
 BUILD ?= build
 OPT ?= -O2 -g
 # Of the library; the program needs more.

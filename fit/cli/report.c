@@ -296,9 +296,11 @@ static void print_other_bins(FILE *file, char *const *row)
 /* What a model of more terms than two has beside the columns. */
 static void print_terms(FILE *file, char *const *row, bool narrow)
 {
-	char a[SHOWN_SIZE], b[SHOWN_SIZE], c[SHOWN_SIZE], text[3 * SHOWN_SIZE + 32];
+	char a[SHOWN_SIZE], text[3 * SHOWN_SIZE + 32];
 
 	if (*row[RESULT_F0_R]) {
+		char b[SHOWN_SIZE], c[SHOWN_SIZE];
+
 		snprintf(text, sizeof text, "(F0 %s, F82 %s, F90 %s)", rgb_text(a, row, RESULT_F0_R),
 			 rgb_text(b, row, RESULT_F82_R), rgb_text(c, row, RESULT_F90_R));
 		print_remark(file, text, narrow);

@@ -12,8 +12,9 @@
 /* Of several weights a material has a place under each: their errors are different measures. */
 static void put_name(FILE *file, const struct error_grid *grid, const struct material *material)
 {
-	char name[TEXT_QUOTE_SIZE + 32], shown[TEXT_QUOTE_SIZE];
+	char name[TEXT_QUOTE_SIZE + 32];
 	if (grid->weights) {
+		char shown[TEXT_QUOTE_SIZE];
 		text_quote(material->name, shown, sizeof shown);
 		snprintf(name, sizeof name, "%s, %.20s", shown, material->row[0][RESULT_WEIGHT]);
 	}

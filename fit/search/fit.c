@@ -731,7 +731,7 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 	struct memory *fresh = calloc(1, sizeof *fresh);
 	struct run own = *run;
 	const bool two_ways = run->options->lobes > 1 && run->options->grazing;
-	struct fit_result simpler, other;
+	struct fit_result simpler, other = {.error = 0};
 	struct shape start[SEARCH_GIVEN];
 	struct found found;
 	long evaluations = 0;

@@ -65,12 +65,12 @@ enum status valley_follow(const struct space *space, struct objective *o, local_
 
 		if (space->coordinate[d] == COORDINATE_GAMMA)
 			status = follow(&walk, space->least_gamma, point);
-		else if (space->coordinate[d] == COORDINATE_IOR)
+		/* Of length, steps in ln(1 - length); n and k of three channels would take too long. */
+		else if (space->coordinate[d] == COORDINATE_IOR ||
+			 (space->coordinate[d] == COORDINATE_LENGTH && !space->per_channel))
 			status = follow(&walk, 1, point);
 		else if (space->per_channel)
-			continue; /* with n and k of three channels that takes too long */
-		else if (space->coordinate[d] == COORDINATE_LENGTH) /* steps in ln(1 - length) */
-			status = follow(&walk, 1, point);
+			continue;
 		else if (space->coordinate[d] == COORDINATE_PHASE)
 			status = follow(&walk, 0, point);
 	}
