@@ -150,6 +150,7 @@ static void lobe_scattered(enum kernel_gaf gaf, const struct kernel_shape *shape
 enum { LANES = KERNEL_LANES, GROUP = 8, GROUPS = 2, VECTORS = GROUPS * GROUP / LANES };
 typedef float lanes __attribute__((vector_size(4 * LANES), may_alias));
 typedef int32_t lanes_int __attribute__((vector_size(4 * LANES), may_alias));
+typedef uint32_t lanes_unsigned __attribute__((vector_size(4 * LANES), may_alias));
 typedef float group __attribute__((vector_size(4 * GROUP)));
 typedef double group_double __attribute__((vector_size(8 * GROUP)));
 
@@ -164,7 +165,8 @@ struct accumulator {
 /* 1/x to about 1 %, x > 0: the curvature is an estimate, and a division takes longer than all the rest. */
 __attribute__((always_inline)) static inline lanes rough_inverse(lanes x)
 {
-	const lanes y = (lanes)(0x7ef311c7 - (lanes_int)x);
+	/* Unsigned, so that an x < 0, of a model below 0 on the way of a search, gives a number as well: it is not used. */
+	const lanes y = (lanes)(0x7ef311c7U - (lanes_unsigned)x);
 
 	return y * (2 - x * y);
 }
