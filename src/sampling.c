@@ -37,6 +37,15 @@ enum status sampler_init(struct sampler *sampler, const struct ndf *ndf, enum sa
 	return STATUS_OK;
 }
 
+enum sampling sampler_init_near(struct sampler *sampler, const struct ndf *ndf, enum sampling sampling)
+{
+	const enum sampling in_turn[] = {sampling, SAMPLING_VISIBLE, SAMPLING_NDF};
+	int n = 0;
+	while (sampler_init(sampler, ndf, in_turn[n]) != STATUS_OK)
+		n++; /* all normals of any distribution can be drawn */
+	return in_turn[n];
+}
+
 struct vec3 sampler_sample(const struct sampler *sampler, struct vec3 wi, double u1, double u2)
 {
 	const struct ndf *ndf = &sampler->proposal;

@@ -27,6 +27,9 @@ struct sampler {
 /* sampler_init - STATUS_UNSUPPORTED where the distribution cannot be sampled so: visible and pseudo as vndf_supports()
  * says, rational as vndf_rational_supports(). */
 MUST_CHECK enum status sampler_init(struct sampler *sampler, const struct ndf *ndf, enum sampling sampling);
+/* sampler_init_near - the same, but where the distribution cannot be sampled so, visible normals take its place, or else all.
+ * Returns which are drawn. */
+enum sampling sampler_init_near(struct sampler *sampler, const struct ndf *ndf, enum sampling sampling);
 /* sampler_sample - a normal seen from wi, as vndf_sample(); SAMPLING_NDF does not read wi. */
 struct vec3 sampler_sample(const struct sampler *sampler, struct vec3 wi, double u1, double u2);
 /* sampler_pdf - the density with which sampler_sample() draws m, 1/sr. */

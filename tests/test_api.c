@@ -391,6 +391,20 @@ static void a_child_can_fit_on_one_thread(void **state)
 	assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
+/* n noisy samples of a model, as a caller of the library has them. */
+static void make_arrays(const struct cook_torrance *truth, size_t n, double wi[], double wo[], double values[])
+{
+	struct measurement made = make_scattered(truth, n, 0.02, 5);
+
+	for (size_t i = 0; i < n; i++) {
+		memcpy(wi + 3 * i, &made.scattered->wi[i], 3 * sizeof *wi);
+		memcpy(wo + 3 * i, &made.scattered->wo[i], 3 * sizeof *wo);
+		for (size_t c = 0; c < 3; c++)
+			values[3 * i + c] = (double)made.scattered->value[c][i];
+	}
+	measurement_free(&made);
+}
+
 /* Samples that lie anywhere, of a brushed surface. */
 static void samples_are_fitted_with_axes(void **state)
 {
@@ -404,14 +418,7 @@ static void samples_are_fitted_with_axes(void **state)
 
 	(void)state;
 	assert_int_equal(ndf_init(&truth.ndf, ndf_find("ggx"), 0.3, 0.15, 2), STATUS_OK);
-	struct measurement made = make_scattered(&truth, N, 0.02, 5);
-	for (size_t i = 0; i < N; i++) {
-		memcpy(wi + 3 * i, &made.scattered->wi[i], 3 * sizeof *wi);
-		memcpy(wo + 3 * i, &made.scattered->wo[i], 3 * sizeof *wo);
-		for (size_t c = 0; c < 3; c++)
-			values[3 * i + c] = (double)made.scattered->value[c][i];
-	}
-	measurement_free(&made);
+	make_arrays(&truth, N, wi, wo, values);
 	assert_int_equal(stdfit_measurement_from_samples(&measurement, N, wi, wo, values, NULL, &error), STDFIT_OK);
 	assert_int_equal(stdfit_measurement_n_phi_d(measurement), 0);
 	options.ndfs = "ggx";
@@ -506,19 +513,12 @@ static void richer_models_are_fitted(void **state)
 		struct stdfit_model model;
 		const struct cook_torrance truth = rich_model(f82, &model);
 		struct stdfit_options options = ggx_options();
-		struct measurement made = make_scattered(&truth, N, 0.02, 5);
 		stdfit_measurement *measurement;
 		stdfit_context *context;
 		struct stdfit_result result;
 		struct stdfit_metrics metrics;
 
-		for (size_t i = 0; i < N; i++) {
-			memcpy(wi + 3 * i, &made.scattered->wi[i], 3 * sizeof *wi);
-			memcpy(wo + 3 * i, &made.scattered->wo[i], 3 * sizeof *wo);
-			for (size_t c = 0; c < 3; c++)
-				values[3 * i + c] = (double)made.scattered->value[c][i];
-		}
-		measurement_free(&made);
+		make_arrays(&truth, N, wi, wo, values);
 		options.fresnel = f82 ? "f82" : NULL;
 		options.lobes = f82 ? 1 : 2;
 		options.n = f82 ? NAN : 1.5;

@@ -17,9 +17,7 @@ enum status glass_init(struct glass *glass, const struct ndf *ndf, enum gaf gaf,
 {
 	struct sampler sampler;
 	glass->multiple = multiple;
-	glass->sampling = sampling;
-	if (sampler_init(&sampler, ndf, sampling) != STATUS_OK)
-		glass->sampling = vndf_supports(ndf) ? SAMPLING_VISIBLE : SAMPLING_NDF;
+	glass->sampling = sampler_init_near(&sampler, ndf, sampling);
 	const enum status status = dielectric_init(&glass->dielectric, ndf, gaf, n);
 	if (status != STATUS_OK || !multiple)
 		return status;

@@ -11,13 +11,9 @@ static double mean_of(const double rgb[3])
 static enum status lobe_init(struct surface_lobe *lobe, const struct ndf *ndf, enum sampling sampling)
 {
 	lobe->ndf = ndf;
-	enum sampling used = sampling;
-	if (sampler_init(&lobe->sampler, ndf, used) != STATUS_OK)
-		used = vndf_supports(ndf) ? SAMPLING_VISIBLE : SAMPLING_NDF;
+	const enum sampling used = sampler_init_near(&lobe->sampler, ndf, sampling);
 	/* The density of those visible has no G1 where that is bounded. */
 	lobe->own = (used == SAMPLING_VISIBLE && !ndf_is_tilted(ndf)) || used == SAMPLING_NDF;
-	if (used != sampling && sampler_init(&lobe->sampler, ndf, used) != STATUS_OK)
-		return STATUS_UNSUPPORTED;
 	lobe->turns = ndf_is_anisotropic(ndf);
 	if (lobe->turns)
 		return STATUS_OK;

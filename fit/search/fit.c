@@ -689,23 +689,32 @@ static int richer_starts(const struct run *run, const struct ndf_class *class, c
 static enum status fit_kind(const struct run *run, const struct ndf_class *class, struct nested *nested,
 			    struct fit_result *r);
 
+/* A fit under other options, with a memory of its own. */
+static enum status fit_apart(const struct run *run, const struct ndf_class *class, const struct fit_options *options,
+			     struct fit_result *r)
+{
+	struct memory *fresh = calloc(1, sizeof *fresh);
+	struct run own = *run;
+
+	if (!fresh)
+		return STATUS_NO_MEMORY;
+	own.options = options;
+	own.minima = fresh->minima;
+	own.isotropic = &fresh->nested;
+	const enum status status =
+		fit_class(&own, class, options->anisotropic ? &fresh->anisotropic : &fresh->nested, r);
+
+	free(fresh);
+	return status;
+}
+
 /* Two lobes beside a grazing term hold two lobes without one, too, which the simpler model is not. */
 static enum status fit_without_grazing(const struct run *run, const struct ndf_class *class, struct fit_result *r)
 {
 	struct fit_options options = *run->options;
-	struct memory *fresh = calloc(1, sizeof *fresh);
-	struct run own = *run;
-	enum status status = STATUS_NO_MEMORY;
 
 	options.grazing = false;
-	own.options = &options;
-	if (fresh) {
-		own.minima = fresh->minima;
-		own.isotropic = &fresh->nested;
-		status = fit_class(&own, class, &fresh->nested, r);
-	}
-	free(fresh);
-	return status;
+	return fit_apart(run, class, &options, r);
 }
 
 /* Of two lobes: where one does as well, the second may have any shape; where none of the grazing term does, that any
@@ -728,24 +737,13 @@ static enum status fit_richer(const struct run *run, const struct ndf_class *cla
 			      const struct fit_options *simpler_options, struct nested *nested, struct fit_result *r)
 {
 	const bool scans = run->options->lobes < 2;
-	struct memory *fresh = calloc(1, sizeof *fresh);
-	struct run own = *run;
 	const bool two_ways = run->options->lobes > 1 && run->options->grazing;
 	struct fit_result simpler, other = {.error = 0};
 	struct shape start[SEARCH_GIVEN];
 	struct found found;
 	long evaluations = 0;
-	enum status status = fresh ? STATUS_OK : STATUS_NO_MEMORY;
+	enum status status = fit_apart(run, class, simpler_options, &simpler);
 	int count = 0;
-
-	if (fresh) {
-		own.options = simpler_options;
-		own.minima = fresh->minima;
-		own.isotropic = &fresh->nested;
-		status = fit_class(&own, class, simpler_options->anisotropic ? &fresh->anisotropic : &fresh->nested,
-				   &simpler);
-	}
-	free(fresh);
 	const double begin = search_clock();
 
 	if (status == STATUS_OK && scans)
@@ -920,27 +918,37 @@ static enum status try_correlated(const struct run *run, struct fit_result resul
 	return status;
 }
 
-enum status fit_run(const struct fit_context *context, const struct measurement *measurement,
-		    const struct fit_options *options, struct fit_result *results, struct error *error)
+enum status fit_samples_of(const struct fit_context *context, const struct measurement *measurement,
+			   const struct fit_options *options, struct multiresolution *multiresolution,
+			   struct error *error)
 {
-	struct run run = {.context = context, .measurement = measurement, .options = options};
-	struct memory *memory = NULL;
 	struct sample_set full;
 	enum status status = check_arguments(context, measurement, options, error);
 
 	if (status != STATUS_OK)
 		return status;
-	for (int n = 0; n < options->n_ndf; n++)
-		results[n].pwl = NULL;
 	status = sample_set_init(&full, &context->geometry, measurement, options->threads);
 	if (status == STATUS_NO_DATA)
 		return error_set(error, status, "no entry to fit: expected some valid ones that are not all zero");
+	*multiresolution = (struct multiresolution){.table = {{.n_blocks = 0}}};
 	if (status == STATUS_OK && options->algorithm)
-		run.multiresolution.table[SEARCH_LEVELS - 1] = full; /* the others need no thinned tables */
+		multiresolution->table[SEARCH_LEVELS - 1] = full; /* other algorithms need no thinned tables */
 	else if (status == STATUS_OK)
-		status = multiresolution_init(&run.multiresolution, &full);
+		status = multiresolution_init(multiresolution, &full);
+	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
+}
+
+enum status fit_run(const struct fit_context *context, const struct measurement *measurement,
+		    const struct fit_options *options, struct fit_result *results, struct error *error)
+{
+	struct run run = {.context = context, .measurement = measurement, .options = options};
+	struct memory *memory = NULL;
+	enum status status = fit_samples_of(context, measurement, options, &run.multiresolution, error);
+
 	if (status != STATUS_OK)
-		return error_set(error, status, "%s", status_str(status));
+		return status;
+	for (int n = 0; n < options->n_ndf; n++)
+		results[n].pwl = NULL;
 	memory = calloc(1, sizeof *memory);
 	if (!memory)
 		status = STATUS_NO_MEMORY;
@@ -960,23 +968,6 @@ enum status fit_run(const struct fit_context *context, const struct measurement 
 		fit_result_free(&results[n]);
 	free(memory);
 	multiresolution_free(&run.multiresolution);
-	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
-}
-
-enum status fit_samples_of(const struct fit_context *context, const struct measurement *measurement,
-			   const struct fit_options *options, struct multiresolution *multiresolution,
-			   struct error *error)
-{
-	struct sample_set full;
-	enum status status = check_arguments(context, measurement, options, error);
-
-	if (status != STATUS_OK)
-		return status;
-	status = sample_set_init(&full, &context->geometry, measurement, options->threads);
-	if (status == STATUS_NO_DATA)
-		return error_set(error, status, "no entry to fit: expected some valid ones that are not all zero");
-	if (status == STATUS_OK)
-		status = multiresolution_init(multiresolution, &full);
 	return status == STATUS_OK ? status : error_set(error, status, "%s", status_str(status));
 }
 

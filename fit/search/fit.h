@@ -107,7 +107,7 @@ MUST_CHECK enum status fit_intervals(const struct fit_context *context, const st
 MUST_CHECK enum status fit_estimate(const struct fit_context *context, const struct measurement *measurement,
 				    const struct fit_options *options, double *estimate, struct error *error);
 
-/* fit_samples_of - the measurement and samples of it, as the search sees them; to be freed with multiresolution_free().
+/* fit_samples_of - the measurement and samples of it, as the search sees them; to be freed with multiresolution_free(). Options with an algorithm have the measurement alone.
  * Errors: as fit_run() */
 MUST_CHECK enum status fit_samples_of(const struct fit_context *context, const struct measurement *measurement,
 				      const struct fit_options *options, struct multiresolution *multiresolution,

@@ -38,7 +38,7 @@ struct profile_context {
 	double least;                         /* and the least one of the sample */
 	struct shape minimum[MINIMA_MAX + 1]; /* of the sample; the first one is *best */
 	int n_minima;
-	struct scan_minima scan;
+	struct scan_minima *scan;
 	_Atomic long evaluations;
 };
 
@@ -72,35 +72,11 @@ static double rise_above(const struct profile_context *c, double error, double l
 	return (error - least) / fmax(c->allowed * least, LEAST_ALLOWED);
 }
 
-static double *value_in(struct shape *shape, enum coordinate coordinate)
-{
-	switch (coordinate) {
-	case COORDINATE_SIGMA:
-		return &shape->sigma;
-	case COORDINATE_GAMMA:
-		return &shape->gamma;
-	case COORDINATE_IOR:
-		return &shape->ior;
-	case COORDINATE_GRAZING:
-		return &shape->grazing;
-	case COORDINATE_SECOND_SIGMA:
-		return &shape->second_sigma;
-	case COORDINATE_SECOND_GAMMA:
-		return &shape->second_gamma;
-	case COORDINATE_STRETCH:
-		return &shape->stretch;
-	case COORDINATE_ANGLE:
-		return &shape->angle;
-	default:
-		return &shape->k;
-	}
-}
-
 static double x_of(const struct profile *p, struct shape shape)
 {
 	const struct space *s = &p->context->space;
 
-	return space_x(s, p->d, *value_in(&shape, s->coordinate[p->d]));
+	return space_x(s, p->d, *space_parameter(s, p->d, &shape));
 }
 
 /* The space with the parameter fixed. sigma is the NDF's own, not that of STD which may stand for it in the space. */
@@ -371,7 +347,7 @@ static enum status add_from_scan(struct profile *p, struct interval_list *list)
 	enum status status = STATUS_OK;
 
 	for (int i = 0; i < axis->count && status == STATUS_OK; i++) {
-		const struct space_point *slice = &c->scan.slice[p->d][i];
+		const struct space_point *slice = &c->scan->slice[p->d][i];
 		const struct shape shape = space_shape(&c->searched, slice->x);
 		struct interval interval;
 
@@ -483,7 +459,7 @@ static enum status find_minima(struct profile_context *c)
 
 	if (c->options->lobes < 2)
 		status = search_minima(c->multiresolution, c->options, c->class, WALK_LEVEL, c->allowed, point,
-				       MINIMA_MAX, &n, &c->scan, &c->evaluations);
+				       MINIMA_MAX, &n, c->scan, &c->evaluations);
 	if (status == STATUS_OK)
 		status = objective_init(&o, &c->multiresolution->table[WALK_LEVEL], c->options, c->class, 1,
 					MASKING_COARSE);
@@ -518,13 +494,13 @@ enum status interval_find(const struct multiresolution *multiresolution, const s
 	space_plain_index(&c.space);
 	if (c.space.dims == 0)
 		return STATUS_OK;
-	enum status status = find_minima(&c);
+	c.scan = calloc(1, sizeof *c.scan);
+	enum status status = c.scan ? find_minima(&c) : STATUS_NO_MEMORY;
+	const int dims = status == STATUS_OK ? c.space.dims : 0;
 
-	if (status != STATUS_OK)
-		return status;
 	use_ratio_and_angle(&c.space);
 #pragma omp parallel for num_threads(options->threads) schedule(dynamic) if (options->threads > 1)
-	for (int d = 0; d < c.space.dims; d++) {
+	for (int d = 0; d < dims; d++) {
 		const enum interval_parameter parameter = parameter_of(c.space.coordinate[d]);
 		const enum status mine =
 			parameter < INTERVAL_PARAMETERS ? find_intervals(&c, d, &list[parameter]) : STATUS_OK;
@@ -533,6 +509,7 @@ enum status interval_find(const struct multiresolution *multiresolution, const s
 #pragma omp critical(interval_status)
 			status = mine;
 	}
+	free(c.scan);
 	*evaluations += c.evaluations;
 	return status;
 }

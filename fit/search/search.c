@@ -710,11 +710,11 @@ enum status search_minima(const struct multiresolution *multiresolution, const s
 			  int n_max, int *n, struct scan_minima *scan_minima, _Atomic long *evaluations)
 {
 	struct search s = new_search(multiresolution, options, class);
-	struct space_point point[FIRST_POINTS_MAX] = {{.error = 0}};
+	struct space_point *point = calloc(FIRST_POINTS_MAX, sizeof *point);
 	const struct stage last = {.max_points = n_max, .margin = margin};
 	struct found found = {.starts = 0};
-	enum status status = STATUS_OK;
-	int count = first_points(&s, point, scan_minima, &status);
+	enum status status = point ? STATUS_OK : STATUS_NO_MEMORY;
+	int count = point ? first_points(&s, point, scan_minima, &status) : 0;
 
 	for (int l = 0; l <= level && status == STATUS_OK; l++) {
 		/* What the sample before is wrong about a difference of errors comes on top. */
@@ -725,7 +725,9 @@ enum status search_minima(const struct multiresolution *multiresolution, const s
 		status = refine_all(&s, l, point, count, &found);
 	}
 	*n = status == STATUS_OK ? thin_out(&s, point, count, &last) : 0;
-	memcpy(minimum, point, (size_t)*n * sizeof *minimum);
+	if (*n > 0)
+		memcpy(minimum, point, (size_t)*n * sizeof *minimum);
+	free(point);
 	*evaluations += s.evaluations;
 	return cancelled(&s) ? STATUS_INTERRUPTED : status;
 }

@@ -10,8 +10,7 @@ double *space_index(const struct space *s, struct shape *shape, int channel, int
 	return which ? &shape->k : &shape->ior;
 }
 
-/* The parameter of dimension d. */
-static double *parameter(const struct space *s, int d, struct shape *shape)
+double *space_parameter(const struct space *s, int d, struct shape *shape)
 {
 	switch (s->coordinate[d]) {
 	case COORDINATE_SIGMA:
@@ -296,7 +295,7 @@ struct shape space_shape(const struct space *s, const double x[])
 		else if (is_of_amplitude(s->coordinate[d]))
 			amplitude[s->channel[d]][s->coordinate[d] - COORDINATE_LENGTH] = space_value(s, d, x[d]);
 		else
-			*parameter(s, d, &shape) = space_value(s, d, x[d]);
+			*space_parameter(s, d, &shape) = space_value(s, d, x[d]);
 	if (stretch[0] != 0 || stretch[1] != 0) {
 		shape.stretch = hypot(stretch[0], stretch[1]);
 		shape.angle = atan2(stretch[1], stretch[0]) * 90 / M_PI;
@@ -331,7 +330,7 @@ void space_from_shape(const struct space *s, const struct shape *shape, double x
 		else if (s->coordinate[d] == COORDINATE_PHASE)
 			x[d] = space_x(s, d, phase_of(n, k));
 		else
-			x[d] = space_x(s, d, *parameter(s, d, &copy));
+			x[d] = space_x(s, d, *space_parameter(s, d, &copy));
 	}
 }
 
@@ -342,7 +341,7 @@ void space_fix(struct space *s, int d, double value)
 	else if (is_of_amplitude(s->coordinate[d]))
 		s->amplitude[s->channel[d]][s->coordinate[d] - COORDINATE_LENGTH] = value;
 	else
-		*parameter(s, d, &s->fixed) = value;
+		*space_parameter(s, d, &s->fixed) = value;
 	s->dims--;
 	for (; d < s->dims; d++) {
 		s->coordinate[d] = s->coordinate[d + 1];

@@ -84,6 +84,8 @@ void space_fix(struct space *space, int d, double value);
 void space_fix_index(struct space *space, int channel, bool fix_k, double value);
 /* space_plain_index - puts n and k that all channels share in the place of COORDINATE_LENGTH and COORDINATE_PHASE. */
 void space_plain_index(struct space *space);
+/* space_parameter - the parameter of dimension d within a shape; not of the coordinates that stand for two. */
+double *space_parameter(const struct space *space, int d, struct shape *shape);
 /* space_index - n (0) or k (1) of a channel within a shape of this space. */
 double *space_index(const struct space *space, struct shape *shape, int channel, int which);
 
