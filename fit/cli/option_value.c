@@ -131,8 +131,7 @@ const struct option_spec option_specs[] = {
 	 AT(fit.sigma), FIT_SIGMA_MIN, FIT_SIGMA_MAX},
 	{"anisotropic", 0, KIND_ON, AXES | SOURCES, RECORDED_ANISOTROPIC, NULL,
 	 "scattered entries: search sigma_x, sigma_y and the angle of their axes, too, from the isotropic fit on; of "
-	 "the "
-	 "ellipsoid also its tilt",
+	 "the ellipsoid also its tilt",
 	 AT(fit.anisotropic), 0, 0},
 	{"angle", 0, KIND_NUMBER, AXES, RECORDED_ANISOTROPIC, "DEG",
 	 "with --anisotropic: fix the azimuth of the axis of sigma_x", AT(fit.angle), -360, 360},
@@ -243,8 +242,7 @@ const struct option_spec option_specs[] = {
 	 0},
 	{"models", 0, KIND_ON, COMPARE, NOT_RECORDED, NULL,
 	 "instead of NDFs compare models of the first NDF, std if none is named, from a gray Lambert term to two "
-	 "coloured "
-	 "lobes: parameters, error, gain over the paper's model in %, delta E, SSIM and seconds of each",
+	 "coloured lobes: parameters, error, gain over the paper's model in %, delta E, SSIM and seconds of each",
 	 AT(models), 0, 0},
 	{"sort", 0, KIND_SORT, COMPARE, NOT_RECORDED, "ORDER",
 	 "materials by name, or by how much STD gains over GGX, with --models the best model over the paper's",

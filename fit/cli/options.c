@@ -536,8 +536,6 @@ static int check_specular(const struct options *options)
 	for (size_t i = 0; i < sizeof of_lobe / sizeof *of_lobe; i++)
 		if (!fit->specular && options_given(options, of_lobe[i]))
 			return options_usage(options->command, "--%s means nothing with --no-specular", of_lobe[i]);
-	if (!fit->specular && !isnan(options->intervals))
-		return options_usage(options->command, "--intervals means nothing with --no-specular");
 	if (!fresnel_has_ior(fit->fresnel) && options_given(options, "ior"))
 		return options_usage(options->command, "--ior means nothing with --fresnel %s",
 				     fresnel_name(fit->fresnel));

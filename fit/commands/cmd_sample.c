@@ -59,11 +59,11 @@ static enum status choose(const struct options *options, const struct described 
 {
 	const bool given = options_given(options, "sampling"), seen = !isnan(options->theta_i);
 	enum sampling sampling = given || seen ? options->sampling : SAMPLING_NDF;
-	enum status status = sampler_init(sampler, &item->distribution.ndf, sampling);
-	if (status != STATUS_OK && !given && sampling != SAMPLING_NDF) {
-		sampling = SAMPLING_NDF;
+	enum status status = STATUS_OK;
+	if (given)
 		status = sampler_init(sampler, &item->distribution.ndf, sampling);
-	}
+	else
+		sampling = sampler_init_near(sampler, &item->distribution.ndf, sampling);
 	if (status != STATUS_OK)
 		return error_set(error, STATUS_UNSUPPORTED, "%s has no --sampling %s%s", item->distribution.name,
 				 sampling_name(sampling),
